@@ -1,0 +1,8 @@
+# tests/<folder>/test_<name>.c becomes one program and one CTest entry; link what it needs.
+function(sunder_test name source)
+  add_executable(test_${name} ${source})
+  target_include_directories(test_${name} PRIVATE ${CMAKE_SOURCE_DIR}/tests)
+  target_link_libraries(test_${name} PRIVATE ${ARGN})
+  target_compile_definitions(test_${name} PRIVATE SUNDER_SOURCE="${CMAKE_SOURCE_DIR}" SUNDER_BINARY="${CMAKE_BINARY_DIR}")
+  add_test(NAME ${name} COMMAND test_${name})
+endfunction()

@@ -1,0 +1,57 @@
+/* Lua scenes and recipes: from a file's text to a validated `scene`.
+ *
+ * Scripts run in a sandbox: no os, io, debug, load of binary chunks; `require` reaches only the built-in module "sunder"
+ * and files beside the scene; 5 s and 512 MiB by default, limits that no pcall loop and no pattern call can swallow; after loading, a write to a global or
+ * to an upvalue from a function of time or place is an error. No C resource is held across a Lua error. */
+#ifndef SUNDER_SCRIPT_SCRIPT_H
+#define SUNDER_SCRIPT_SCRIPT_H
+
+#include "base/status.h"
+#include "sim/scene.h"
+
+typedef struct script script;
+
+typedef struct script_setting {
+    const char *key, *value; /* from --set KEY=VALUE */
+} script_setting;
+
+typedef struct script_options {
+    const char *recipe;             /* --recipe NAME: replaces every body's material, NULL for none */
+    const script_setting *settings; /* [setting_count] */
+    int setting_count;
+    double time_limit;              /* seconds of processor time; 5 */
+    size_t memory_limit;            /* bytes; 512 MiB */
+} script_options;
+
+script_options script_options_default(void);
+
+enum { SCRIPT_REPORTS = 64 };
+
+/* Everything that was wrong, in file order where possible; `check --json` lists them all. */
+typedef struct script_reports {
+    int count;
+    report items[SCRIPT_REPORTS];
+} script_reports;
+
+/* Loads, validates and resolves a scene file. On STATUS_OK *out owns the Lua state and the scene. On failure *out is NULL
+ * and `reports` holds at least one entry; its first one's code is the return value. */
+status script_load(const char *path, const script_options *options, script **out, script_reports *reports);
+
+/* The scene, owned by the script: its functions call into the script's Lua state. */
+scene *script_scene(script *s);
+
+/* The text of each file that took part (scene, recipes, modules): written into the run's folder. name is relative, without
+ * "..": "tube_pull.lua", "recipes/tube.lua". */
+typedef struct script_source {
+    const char *name, *text;
+    size_t size;
+} script_source;
+int script_source_count(const script *s);
+script_source script_source_at(const script *s, int index);
+
+/* A Lua text that, loaded as a scene's overrides, pins every resolved parameter ("return { pull = 0.1, … }"); owned by `s`. */
+const char *script_resolved(script *s);
+
+void script_close(script *s);
+
+#endif

@@ -1,0 +1,95 @@
+/* A session: one run of one scene, from its ledger row to its result, on a thread of its own.
+ *
+ * It owns the loop "simulate a frame, measure, write, log". Screens and progress lines read snapshots; they never wait for the
+ * simulation nor it for them. */
+#ifndef SUNDER_SESSION_SESSION_H
+#define SUNDER_SESSION_SESSION_H
+
+#include "base/status.h"
+#include "script/script.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct session session;
+
+enum { SESSION_BINS = 50, SESSION_HISTORY = 512, SESSION_EFFECTS = 16 };
+
+typedef struct session_options {
+    script_options script;
+    const char *scene_path;
+    const char *output;   /* --out or NULL */
+    const char *database; /* --db or NULL */
+    const char *resume;   /* --resume RUN or NULL */
+    const char *simd;     /* "auto", "plain", "avx2", "avx512" */
+    const char *command;  /* the command line, for the ledger */
+    int threads;          /* 0: all cores */
+    int precision;        /* 32 or 64 */
+    int64_t frames;       /* −1: the scene's */
+    int checkpoint_every; /* frames; 0: none */
+    int keep;             /* checkpoints kept; 0: all */
+    int deflate;          /* 0–9 */
+    bool start_paused;
+} session_options;
+
+session_options session_options_default(void);
+
+typedef enum session_state { SESSION_STARTING, SESSION_RUNNING, SESSION_PAUSED, SESSION_ENDED } session_state;
+
+/* Numbers of one frame: kept for sparklines and progress. */
+typedef struct session_sample {
+    int64_t frame;
+    double time, seconds; /* simulated time; wall time of this frame's steps */
+    double kinetic, elastic, fibre, work;
+    double damage_mean, damage_max, broken_fraction, dt;
+    double histogram[SESSION_BINS]; /* fraction of particles by damage, 50 equal bins over [0,1] */
+} session_sample;
+
+/* What a screen shows. Arrays have shape [particles][…], rows by id, and belong to the snapshot. */
+typedef struct session_snapshot {
+    uint64_t version; /* grows with each publication */
+    session_state state;
+    status outcome;         /* valid when state is SESSION_ENDED */
+    char message[768];      /* the failure, or the last warning */
+    char run_id[40], title[128], output[512], precision[8], simd[16], variant[64];
+    char effects[SESSION_EFFECTS][32];
+    int effect_count;
+    int threads;
+    int64_t frame, frames, step, particles;
+    double time, duration, dt, dt_min, dt_max;
+    double seconds_per_frame, seconds_left, wall, step_wall;
+    session_sample now;
+    int history_count; /* samples of the last SESSION_HISTORY frames, oldest first */
+    session_sample history[SESSION_HISTORY];
+    int64_t point_count, point_capacity;
+    float *position;     /* [point_count][3] */
+    float *damage;       /* [point_count] */
+    int32_t *body;       /* [point_count] */
+    float bounds_minimum[3], bounds_maximum[3]; /* of the first frame: a steady camera */
+} session_snapshot;
+
+/* Loads the scene, opens the ledger, plans, and starts the thread. Input errors are returned here, before any row or folder is made. */
+status session_start(const session_options *options, session **out, script_reports *reports);
+
+/* Copies the newest state if its version differs from snapshot->version; returns whether it did. Never blocks on the
+ * simulation for longer than a copy. Start from a zeroed snapshot; free it with session_snapshot_free. */
+bool session_poll(session *s, session_snapshot *snapshot);
+void session_snapshot_free(session_snapshot *snapshot);
+
+/* Requests, from any thread (session_stop also from a signal handler). */
+void session_pause(session *s, bool paused);
+void session_step_once(session *s); /* while paused: one frame */
+void session_stop(session *s);      /* finish the frame, write a checkpoint, end as interrupted */
+void session_abandon(session *s);   /* leave at the next step: up to the last whole frame is kept */
+
+/* Waits for the end (at most `seconds`; negative: for ever). True when it has ended. */
+bool session_wait(session *s, double seconds);
+
+/* After the end: the outcome, its report and the summary as JSON (owned by the session). */
+status session_outcome(session *s, report *r);
+const char *session_summary(session *s);
+
+/* Stops if needed, joins the thread, closes ledger and script. */
+void session_destroy(session *s);
+
+#endif

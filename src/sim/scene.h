@@ -1,0 +1,130 @@
+/* A scene as plain data: what the script floor produces and the simulation consumes.
+ *
+ * Everything lives in the scene's arena. Functions of time or place arrive as callbacks: the simulation does not know
+ * that Lua stands behind them. They are called from the simulation's thread only. */
+#ifndef SUNDER_SIM_SCENE_H
+#define SUNDER_SIM_SCENE_H
+
+#include "effect/effect.h"
+#include "geom/sampling.h"
+#include "geom/shape.h"
+
+#include <stdint.h>
+
+enum { SCENE_MATERIALS = 16, SCENE_BODIES = 32, SCENE_GRIPS = 32, SCENE_COLLIDERS = 32, SCENE_PARAMETERS = 128 };
+
+/* A constant, or a function of `inputs` reals (time, or x y z) giving `outputs` reals. */
+typedef struct scene_function {
+    int outputs;         /* 1 to 6; 0: absent */
+    double constant[6];  /* used when call is NULL */
+    status (*call)(void *context, const double *input, int inputs, double *output, int outputs, report *r);
+    void *context;
+} scene_function;
+
+/* Evaluates a function; a result that is not finite is an input error. */
+status scene_function_evaluate(const scene_function *f, const double *input, int inputs, double *output, report *r);
+
+typedef struct scene_material {
+    char name[64];
+    double density;             /* mass/length^3, > 0 */
+    effect_values effects[EFFECT_LIMIT]; /* by index in effect_catalogue() */
+    char file[256];             /* where it was defined, for messages */
+    int line;
+} scene_material;
+
+/* Per-particle fibre directions in the reference configuration. */
+typedef struct scene_fibres {
+    int families;           /* 0, 1 or 2 */
+    scene_function direction; /* of place: 3 outputs (one family) or 6 (two); need not be unit or orthogonal */
+} scene_fibres;
+
+typedef struct scene_body {
+    char name[64];
+    const shape *shape;
+    int material; /* index into scene.materials */
+    sampling_kind sampling;
+    scene_fibres fibres;
+    scene_function velocity; /* of place: initial velocity, 3 outputs; absent means at rest */
+} scene_body;
+
+/* Grips take hold of grid nodes inside a moving region and prescribe their velocity. */
+typedef struct scene_grip {
+    char name[64];
+    const shape *shape;        /* at time 0 */
+    scene_function velocity;   /* of time: 3 outputs */
+    scene_function spin;       /* of time: angular velocity about `pivot`, 3 outputs; absent means none */
+    double pivot[3];           /* moves along with the grip */
+    double start, stop;        /* holds only while start ≤ t < stop; stop may be HUGE_VAL */
+    bool protects;             /* particles that start inside are never damaged (default true) */
+} scene_grip;
+
+typedef enum contact_kind { CONTACT_STICKY, CONTACT_SLIP, CONTACT_SEPARATE } contact_kind;
+
+/* Rigid shapes that material cannot enter: walls are half-spaces at rest. */
+typedef struct scene_collider {
+    char name[64];
+    const shape *shape;
+    scene_function velocity, spin;
+    double pivot[3];
+    double start, stop;
+    contact_kind contact; /* sticky: no relative motion; slip: no normal motion; separate: may leave, not enter */
+    double friction;      /* Coulomb coefficient, for slip and separate */
+} scene_collider;
+
+typedef enum transfer_kind { TRANSFER_APIC, TRANSFER_RPIC, TRANSFER_PIC, TRANSFER_FLIP } transfer_kind;
+typedef enum kernel_kind { KERNEL_QUADRATIC, KERNEL_CUBIC } kernel_kind;
+
+/* One resolved scene parameter, for the ledger and for `--set`. */
+typedef struct scene_parameter {
+    char name[128];  /* "pull", or dotted: "tube.damage.eta" */
+    char unit[48];
+    char doc[192];
+    bool is_text;
+    double number;
+    char text[128];
+    bool from_set;   /* overridden by --set */
+} scene_parameter;
+
+typedef struct scene {
+    arena *memory;
+    char title[128], file[256];
+    char units[64];      /* a name for the unit system, free text ("cgs", "SI"); may be empty */
+    double duration, fps;
+    int64_t particles;   /* wanted, over all bodies */
+    double dx;           /* grid spacing, 0: from `particles` and particles_per_cell */
+    double particles_per_cell; /* default 8 */
+    double dt;           /* 0: automatic */
+    double cfl;          /* fraction of the step limit, default 0.5 */
+    uint64_t seed;
+    double domain_minimum[3], domain_maximum[3]; /* particles that leave are a divergence; default ±HUGE_VAL */
+    transfer_kind transfer;
+    double transfer_ratio; /* FLIP fraction; RPIC: share of the symmetric part of C that is kept; default 0 */
+    kernel_kind kernel, laplacian;
+
+    effect_values effects[EFFECT_LIMIT]; /* SCOPE_SCENE effects, by index in effect_catalogue() */
+    int material_count, body_count, grip_count, collider_count, parameter_count;
+    scene_material materials[SCENE_MATERIALS];
+    scene_body bodies[SCENE_BODIES];
+    scene_grip grips[SCENE_GRIPS];
+    scene_collider colliders[SCENE_COLLIDERS];
+    scene_parameter parameters[SCENE_PARAMETERS];
+} scene;
+
+/* A scene with every default in place, in an arena of its own. NULL when out of memory. */
+scene *scene_create(void);
+void scene_destroy(scene *s);
+
+/* Checks what tables cannot: bodies present, materials used, numbers finite, needed effects on, twins resolved. Fills the derived
+ * halves of twins in every material. */
+status scene_validate(scene *s, report *r);
+
+/* The number of frames after the initial one: duration × fps, rounded. */
+int64_t scene_frames(const scene *s);
+
+/* All effects of both engines, metadata only (the tables' `stages` are those of the plain f64 build). */
+const effect *const *effect_catalogue(int *count);
+
+/* The index of an effect by name in the catalogue, or -1. */
+int effect_index(const char *name);
+
+#endif

@@ -1,0 +1,49 @@
+/* A run's folder: frames and checkpoints, one HDF5 file each, written beside, synced and renamed.
+ *
+ * HDF5 is called from one thread at a time (the caller sees to it), no file stays open between calls, HDF5's own
+ * error printing is off and its error stack ends up in the report. */
+#ifndef SUNDER_STORE_FRAMES_H
+#define SUNDER_STORE_FRAMES_H
+
+#include "base/record.h"
+#include "base/status.h"
+
+#include <stdbool.h>
+
+/* What a frame says of itself besides its arrays. */
+typedef struct frame_header {
+    int64_t frame, step;
+    double time;
+    const char *run_id, *units, *scene_title, *scene_hash, *version, *precision, *simd;
+} frame_header;
+
+/* Creates the folder with frames/ and scene/. A folder that already holds a run's frames is an input error that says so, unless `resume`. */
+status run_folder_create(const char *folder, bool resume, report *r);
+
+/* Writes frames/%06d.hdf from records named "solid/position" [n,3] … "sheet/…", with attributes and a VTKHDF 1.0
+ * UnstructuredGrid view by soft links (a vertex cell per particle), then refreshes frames/frames.hdf.series (a JSON file: ParaView's
+ * file series with times), itself written beside and renamed. `deflate` 0–9 (with shuffle). */
+status frame_write(const char *folder, const frame_header *header, const record_list *records, int deflate, report *r);
+
+/* Reads a frame's records back (names as written, without the VTK view), and its step and time. The caller clears the list. */
+status frame_read(const char *folder, int64_t frame, record_list *records, double *time, int64_t *step, report *r);
+
+/* Number of the last whole frame, or −1. */
+int64_t frame_last(const char *folder);
+
+/* checkpoint-%06d.hdf: any records; every byte comes back as it was. A content hash (xxHash) is stored and checked on
+ * reading: a damaged file is an error, and checkpoint_read_last falls back to the one before it, saying so in *warning. */
+status checkpoint_write(const char *folder, const frame_header *header, const record_list *records, report *r);
+status checkpoint_read(const char *folder, int64_t frame, record_list *records, report *r);
+status checkpoint_read_last(const char *folder, record_list *records, int64_t *frame, report *warning, report *r);
+
+/* Removes all but the `keep` newest checkpoints. */
+status checkpoint_thin(const char *folder, int keep, report *r);
+
+/* Removes frames numbered above `frame` (a resumed run rewrites them). */
+status frame_truncate(const char *folder, int64_t frame, report *r);
+
+/* Writes text beside, syncs, renames, syncs the directory. */
+status file_write_atomic(const char *path, const char *text, size_t size, report *r);
+
+#endif

@@ -1,0 +1,79 @@
+/* The run ledger: one SQLite database that remembers every run, its parameters and its measures per frame.
+ *
+ * WAL journal, busy timeout, BEGIN IMMEDIATE, one connection per process writes. Schema and migrations are the .sql files of db/schema,
+ * compiled into the program. Run ids are short, sortable and unique: "20261122-061502-3f9a". */
+#ifndef SUNDER_STORE_LEDGER_H
+#define SUNDER_STORE_LEDGER_H
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+typedef struct ledger ledger;
+
+enum { LEDGER_ID = 40 };
+
+/* The ledger's path when --db is not given: $SUNDER_DB, else $XDG_DATA_HOME/sunder/ledger.db, else ~/.local/share/…; the folder
+ * is created by ledger_open. */
+status ledger_default_path(char *path, size_t size, report *r);
+
+/* The folder under which runs without --out are kept: the ledger's default folder + "/runs". */
+status ledger_runs_folder(char *path, size_t size, report *r);
+
+/* Opens (creating and migrating as needed). A file that is no database, or a newer schema, is an error that says so. */
+status ledger_open(const char *path, ledger **out, report *r);
+void ledger_close(ledger *l);
+
+typedef struct ledger_run {
+    const char *scene_path, *scene_title, *scene_hash; /* hash: of all sources, hex */
+    const char *variant;                               /* may be NULL */
+    const char *command;                               /* the command line, for people */
+    const char *output;                                /* the run's folder */
+    const char *precision, *simd, *version;
+    const char *effects;                               /* names joined by commas */
+    int threads;
+    int64_t particles, frames_wanted, seed;
+    const char *parent;                                /* run id and frame that it was resumed or branched from, or NULL */
+    int64_t parent_frame;
+} ledger_run;
+
+/* Writes the run as 'running', with this process's pid, host and start time (dead runs are recognised by them), and gives its
+ * id. */
+status ledger_begin(ledger *l, const ledger_run *run, char id[LEDGER_ID], report *r);
+
+/* A resolved parameter of a run: text when `text` is not NULL, else a number. */
+status ledger_parameter(ledger *l, const char *id, const char *name, const char *unit, double number, const char *text,
+                        bool from_set, report *r);
+
+typedef struct ledger_value {
+    const char *name;
+    double value; /* NaN is stored as NULL */
+} ledger_value;
+
+/* Measures of one frame, in one transaction. */
+status ledger_frame(ledger *l, const char *id, int64_t frame, double time, int64_t steps, double wall_seconds,
+                    const ledger_value *values, int count, report *r);
+
+/* An event ("first_crack", "warning", "knob", "checkpoint" …) with free text. */
+status ledger_event(ledger *l, const char *id, int64_t frame, const char *kind, const char *text, report *r);
+
+/* Ends a run: status is "done", "failed", "interrupted"; summary_json is the `run --json` object. */
+status ledger_finish(ledger *l, const char *id, const char *run_status, int64_t frames, int64_t steps, double wall_seconds,
+                     const char *message, const char *summary_json, report *r);
+
+/* Marks a run that is being resumed as 'running' again, under this process. */
+status ledger_reopen(ledger *l, const char *id, report *r);
+
+/* Expands a full id, a unique prefix, a unique suffix, or "last" into an id and its output folder. STATUS_INPUT with the nearest id. */
+status ledger_resolve(ledger *l, const char *name, char id[LEDGER_ID], char *output, size_t size, report *r);
+
+/* Runs whose process is gone are shown as "dead" (host and pid, with the process start time, tell). `json` prints one object on
+ * `out`. Filters: `where` is NULL or an SQL condition over the runs view. */
+status ledger_print_list(ledger *l, FILE *out, bool json, const char *where, int limit, report *r);
+status ledger_print_show(ledger *l, FILE *out, bool json, const char *id, report *r);
+/* Just what differs: columns of the run, parameters, final measures; nothing that is equal, and not times and ids. */
+status ledger_print_diff(ledger *l, FILE *out, bool json, const char *a, const char *b, report *r);
+
+#endif

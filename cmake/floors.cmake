@@ -1,6 +1,6 @@
-# The floors, from the ground up. A floor links only those below it.
-file(GLOB BASE_SOURCES CONFIGURE_DEPENDS src/base/*.c)
-sunder_floor(base SOURCES ${BASE_SOURCES} USES PkgConfig::XXHASH OpenMP::OpenMP_C Threads::Threads m)
-file(GLOB GEOM_SOURCES CONFIGURE_DEPENDS src/geom/*.c)
-sunder_floor(geom SOURCES ${GEOM_SOURCES} USES sunder_base)
-sunder_floor(effect SOURCES src/effect/effect.c USES sunder_base)
+# The floors, from the ground up: each has a CMakeLists.txt of its own and links only what lies below it.
+foreach(floor base geom effect solid sim store script view session tui cli)
+  if(EXISTS ${CMAKE_SOURCE_DIR}/src/${floor}/CMakeLists.txt)
+    add_subdirectory(src/${floor})
+  endif()
+endforeach()

@@ -6,3 +6,9 @@ function(sunder_test name source)
   target_compile_definitions(test_${name} PRIVATE SUNDER_SOURCE="${CMAKE_SOURCE_DIR}" SUNDER_BINARY="${CMAKE_BINARY_DIR}")
   add_test(NAME ${name} COMMAND test_${name})
 endfunction()
+
+# Each floor lists its tests in a file of its own.
+file(GLOB TEST_LISTS CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cmake/tests_*.cmake)
+foreach(list ${TEST_LISTS})
+  include(${list})
+endforeach()

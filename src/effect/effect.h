@@ -60,7 +60,7 @@ typedef struct effect_values {
     double value[PARAMETER_LIMIT][3];  /* reals use [0] */
 } effect_values;
 
-struct solid_stages; /* src/solid/stages.h */
+struct solid_stages; /* src/solid/state.h */
 
 typedef struct effect {
     const char *name; /* the scene's word, e.g. "damage" */

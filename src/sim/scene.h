@@ -6,6 +6,7 @@
 #define SUNDER_SIM_SCENE_H
 
 #include "effect/effect.h"
+#include "effect/kinds.h"
 #include "geom/sampling.h"
 #include "geom/shape.h"
 
@@ -58,8 +59,6 @@ typedef struct scene_grip {
     bool protects;             /* particles that start inside are never damaged (default true) */
 } scene_grip;
 
-typedef enum contact_kind { CONTACT_STICKY, CONTACT_SLIP, CONTACT_SEPARATE } contact_kind;
-
 /* Rigid shapes that material cannot enter: walls are half-spaces at rest. */
 typedef struct scene_collider {
     char name[64];
@@ -67,12 +66,9 @@ typedef struct scene_collider {
     scene_function velocity, spin;
     double pivot[3];
     double start, stop;
-    contact_kind contact; /* sticky: no relative motion; slip: no normal motion; separate: may leave, not enter */
+    contact_kind contact;
     double friction;      /* Coulomb coefficient, for slip and separate */
 } scene_collider;
-
-typedef enum transfer_kind { TRANSFER_APIC, TRANSFER_RPIC, TRANSFER_PIC, TRANSFER_FLIP } transfer_kind;
-typedef enum kernel_kind { KERNEL_QUADRATIC, KERNEL_CUBIC } kernel_kind;
 
 /* One resolved scene parameter, for the ledger and for `--set`. */
 typedef struct scene_parameter {

@@ -1,0 +1,246 @@
+/* Vectors: the one header that knows instruction sets.
+ *
+ * A kernel source is compiled once for each precision (SUNDER_PRECISION 32 or 64) and instruction set (SUNDER_SIMD 0 plain,
+ * 1 AVX2 + FMA, 2 AVX-512). `vec` holds VEC_LANES reals; arithmetic operators work lane by lane. Plain is portable C (16-byte
+ * vectors of the compiler's) and is the twin that the tests compare the others with. Fused multiply-add happens only
+ * where vec_fma says so: the same bits on every run of one instruction set. */
+#ifndef SUNDER_BASE_SIMD_H
+#define SUNDER_BASE_SIMD_H
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#if SUNDER_PRECISION == 32
+typedef float real;
+typedef int32_t real_bits;
+#elif SUNDER_PRECISION == 64
+typedef double real;
+typedef int64_t real_bits;
+#else
+#error "SUNDER_PRECISION must be 32 or 64"
+#endif
+
+#if SUNDER_SIMD > 0
+#include <immintrin.h>
+#endif
+
+#if SUNDER_SIMD == 2
+#define VEC_BYTES 64
+#elif SUNDER_SIMD == 1
+#define VEC_BYTES 32
+#else
+#define VEC_BYTES 16
+#endif
+
+enum { VEC_LANES = VEC_BYTES / (int)sizeof(real) };
+
+typedef real vec __attribute__((vector_size(VEC_BYTES)));
+typedef real_bits vec_mask __attribute__((vector_size(VEC_BYTES))); /* all ones where true */
+
+#define SIMD_INLINE static inline __attribute__((always_inline))
+
+SIMD_INLINE vec vec_load(const real *from) {
+    vec v;
+    memcpy(&v, from, sizeof v);
+    return v;
+}
+
+SIMD_INLINE void vec_store(real *to, vec v) {
+    memcpy(to, &v, sizeof v);
+}
+
+SIMD_INLINE vec vec_all(real x) {
+    return x - (vec){0};
+}
+
+/* a·b + c; fused on AVX2 and AVX-512, two roundings in plain. */
+SIMD_INLINE vec vec_fma(vec a, vec b, vec c) {
+#if SUNDER_SIMD == 2 && SUNDER_PRECISION == 32
+    return _mm512_fmadd_ps(a, b, c);
+#elif SUNDER_SIMD == 2
+    return _mm512_fmadd_pd(a, b, c);
+#elif SUNDER_SIMD == 1 && SUNDER_PRECISION == 32
+    return _mm256_fmadd_ps(a, b, c);
+#elif SUNDER_SIMD == 1
+    return _mm256_fmadd_pd(a, b, c);
+#else
+    return a * b + c;
+#endif
+}
+
+SIMD_INLINE vec vec_sqrt(vec a) {
+#if SUNDER_SIMD == 2 && SUNDER_PRECISION == 32
+    return _mm512_sqrt_ps(a);
+#elif SUNDER_SIMD == 2
+    return _mm512_sqrt_pd(a);
+#elif SUNDER_SIMD == 1 && SUNDER_PRECISION == 32
+    return _mm256_sqrt_ps(a);
+#elif SUNDER_SIMD == 1
+    return _mm256_sqrt_pd(a);
+#else
+    for (int i = 0; i < VEC_LANES; i++) a[i] = sizeof(real) == 4 ? (real)sqrtf((float)a[i]) : (real)sqrt((double)a[i]);
+    return a;
+#endif
+}
+
+/* where(mask) ? a : b */
+SIMD_INLINE vec vec_select(vec_mask mask, vec a, vec b) {
+    return (vec)(((vec_mask)a & mask) | ((vec_mask)b & ~mask));
+}
+
+/* Of a NaN and a number the result is b: callers put the number that must survive second. */
+SIMD_INLINE vec vec_max(vec a, vec b) {
+    return vec_select(a > b, a, b);
+}
+
+SIMD_INLINE vec vec_min(vec a, vec b) {
+    return vec_select(a < b, a, b);
+}
+
+SIMD_INLINE vec vec_abs(vec a) {
+    return vec_select(a < 0, -a, a);
+}
+
+SIMD_INLINE int vec_any(vec_mask mask) {
+#if SUNDER_SIMD == 2 && SUNDER_PRECISION == 32
+    return _mm512_movepi32_mask((__m512i)mask) != 0;
+#elif SUNDER_SIMD == 2
+    return _mm512_movepi64_mask((__m512i)mask) != 0;
+#elif SUNDER_SIMD == 1
+    return _mm256_movemask_epi8((__m256i)mask) != 0;
+#else
+    real_bits any = 0;
+    for (int i = 0; i < VEC_LANES; i++) any |= mask[i];
+    return any != 0;
+#endif
+}
+
+/* The largest lane; NaN lanes do not win. */
+SIMD_INLINE real vec_largest(vec a) {
+    real largest = a[0];
+    for (int i = 1; i < VEC_LANES; i++) largest = a[i] > largest ? a[i] : largest;
+    return largest;
+}
+
+/* Rounds towards −∞; lanes must fit a 32-bit integer. */
+SIMD_INLINE vec vec_floor(vec a) {
+#if SUNDER_SIMD == 2 && SUNDER_PRECISION == 32
+    return _mm512_floor_ps(a);
+#elif SUNDER_SIMD == 2
+    return _mm512_floor_pd(a);
+#elif SUNDER_SIMD == 1 && SUNDER_PRECISION == 32
+    return _mm256_floor_ps(a);
+#elif SUNDER_SIMD == 1
+    return _mm256_floor_pd(a);
+#else
+    for (int i = 0; i < VEC_LANES; i++) {
+        real whole = (real)(int32_t)a[i];
+        a[i] = whole > a[i] ? whole - 1 : whole;
+    }
+    return a;
+#endif
+}
+
+/* ---- rows: four nodes of four reals, for the transfers ----------------------------------------------------------- */
+
+enum { ROW = 16, ROW_PARTS = ROW / VEC_LANES };
+
+typedef struct node_row {
+    vec part[ROW_PARTS];
+} node_row;
+
+SIMD_INLINE node_row row_load(const real *from) {
+    node_row r;
+    for (int i = 0; i < ROW_PARTS; i++) r.part[i] = vec_load(from + i * VEC_LANES);
+    return r;
+}
+
+SIMD_INLINE void row_store(real *to, node_row r) {
+    for (int i = 0; i < ROW_PARTS; i++) vec_store(to + i * VEC_LANES, r.part[i]);
+}
+
+SIMD_INLINE node_row row_fma(node_row a, node_row b, node_row c) {
+    for (int i = 0; i < ROW_PARTS; i++) c.part[i] = vec_fma(a.part[i], b.part[i], c.part[i]);
+    return c;
+}
+
+SIMD_INLINE node_row row_scale_add(node_row a, real s, node_row c) {
+    vec scale = vec_all(s);
+    for (int i = 0; i < ROW_PARTS; i++) c.part[i] = vec_fma(a.part[i], scale, c.part[i]);
+    return c;
+}
+
+SIMD_INLINE node_row row_scale(node_row a, real s) {
+    vec scale = vec_all(s);
+    for (int i = 0; i < ROW_PARTS; i++) a.part[i] = a.part[i] * scale;
+    return a;
+}
+
+SIMD_INLINE node_row row_add(node_row a, node_row b) {
+    for (int i = 0; i < ROW_PARTS; i++) a.part[i] = a.part[i] + b.part[i];
+    return a;
+}
+
+/* abcd abcd abcd abcd */
+SIMD_INLINE node_row row_repeat(const real *four) {
+    node_row r;
+#if SUNDER_SIMD == 2 && SUNDER_PRECISION == 32
+    r.part[0] = _mm512_broadcast_f32x4(_mm_loadu_ps(four));
+#elif SUNDER_SIMD == 2
+    r.part[0] = r.part[1] = _mm512_broadcast_f64x4(_mm256_loadu_pd(four));
+#elif SUNDER_SIMD == 1 && SUNDER_PRECISION == 32
+    r.part[0] = r.part[1] = _mm256_broadcast_ps((const __m128 *)(const void *)four);
+#elif SUNDER_SIMD == 1
+    r.part[0] = r.part[1] = r.part[2] = r.part[3] = _mm256_loadu_pd(four);
+#else
+    for (int i = 0; i < ROW_PARTS; i++) r.part[i] = vec_load(four + i * VEC_LANES % 4);
+#endif
+    return r;
+}
+
+/* aaaa bbbb cccc dddd */
+SIMD_INLINE node_row row_spread(const real *four) {
+    node_row r;
+#if SUNDER_SIMD == 2 && SUNDER_PRECISION == 32
+    const __m512i index = _mm512_set_epi32(3, 3, 3, 3, 2, 2, 2, 2, 1, 1, 1, 1, 0, 0, 0, 0);
+    r.part[0] = _mm512_permutexvar_ps(index, _mm512_castps128_ps512(_mm_loadu_ps(four)));
+#elif SUNDER_SIMD == 2
+    r.part[0] = _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_set1_pd(four[0])), _mm256_set1_pd(four[1]), 1);
+    r.part[1] = _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_set1_pd(four[2])), _mm256_set1_pd(four[3]), 1);
+#elif SUNDER_SIMD == 1 && SUNDER_PRECISION == 32
+    r.part[0] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_set1_ps(four[0])), _mm_set1_ps(four[1]), 1);
+    r.part[1] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_set1_ps(four[2])), _mm_set1_ps(four[3]), 1);
+#elif SUNDER_SIMD == 1
+    for (int i = 0; i < 4; i++) r.part[i] = _mm256_set1_pd(four[i]);
+#else
+    for (int i = 0; i < ROW_PARTS; i++) r.part[i] = vec_all(four[i * VEC_LANES / 4]);
+#endif
+    return r;
+}
+
+/* Adds the four groups of four, in the order (0 + 1) + (2 + 3). */
+SIMD_INLINE void row_fold(node_row r, real *four) {
+#if SUNDER_SIMD == 2 && SUNDER_PRECISION == 32
+    __m256 half01 = _mm512_castps512_ps256(r.part[0]), half23 = _mm512_extractf32x8_ps(r.part[0], 1);
+    __m128 sum01 = _mm_add_ps(_mm256_castps256_ps128(half01), _mm256_extractf128_ps(half01, 1));
+    __m128 sum23 = _mm_add_ps(_mm256_castps256_ps128(half23), _mm256_extractf128_ps(half23, 1));
+    _mm_storeu_ps(four, _mm_add_ps(sum01, sum23));
+#elif SUNDER_SIMD == 2
+    __m256d sum01 = _mm256_add_pd(_mm512_castpd512_pd256(r.part[0]), _mm512_extractf64x4_pd(r.part[0], 1));
+    __m256d sum23 = _mm256_add_pd(_mm512_castpd512_pd256(r.part[1]), _mm512_extractf64x4_pd(r.part[1], 1));
+    _mm256_storeu_pd(four, _mm256_add_pd(sum01, sum23));
+#elif SUNDER_SIMD == 1 && SUNDER_PRECISION == 32
+    __m128 sum01 = _mm_add_ps(_mm256_castps256_ps128(r.part[0]), _mm256_extractf128_ps(r.part[0], 1));
+    __m128 sum23 = _mm_add_ps(_mm256_castps256_ps128(r.part[1]), _mm256_extractf128_ps(r.part[1], 1));
+    _mm_storeu_ps(four, _mm_add_ps(sum01, sum23));
+#elif SUNDER_SIMD == 1
+    _mm256_storeu_pd(four, _mm256_add_pd(_mm256_add_pd(r.part[0], r.part[1]), _mm256_add_pd(r.part[2], r.part[3])));
+#else
+    real all[ROW];
+    row_store(all, r);
+    for (int c = 0; c < 4; c++) four[c] = (all[c] + all[4 + c]) + (all[8 + c] + all[12 + c]);
+#endif
+}
+
+#endif

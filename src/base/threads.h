@@ -1,0 +1,16 @@
+/* Work shared out over threads. Results must not depend on who does what: each item writes only what is its own. */
+#ifndef SUNDER_BASE_THREADS_H
+#define SUNDER_BASE_THREADS_H
+
+#include <stdint.h>
+
+/* Calls body(context, i, worker) for i in 0 … count−1 on `threads` threads (the caller's among them), in chunks of `grain` items,
+ * and returns when all are done. worker is in 0 … threads−1 and never shared by two running calls. Nothing is allocated
+ * after the first call with this many threads. */
+void parallel_for(int threads, int64_t count, int64_t grain, void (*body)(void *context, int64_t i, int worker),
+                  void *context);
+
+/* Processors that this process may run on. */
+int processor_count(void);
+
+#endif

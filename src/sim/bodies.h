@@ -1,0 +1,21 @@
+/* From a scene's bodies to arrays of particles. */
+#ifndef SUNDER_SIM_BODIES_H
+#define SUNDER_SIM_BODIES_H
+
+#include "sim/scene.h"
+
+/* Particles of all bodies, in the order of bodies and of sampling; the index is the particle's id for ever. */
+typedef struct body_particles {
+    int64_t count;
+    double dx, spacing;
+    double *position, *velocity; // [count][3]
+    double *volume;              // [count]
+    double *fibre1, *fibre2;     // [count][3], NULL when no body has that family
+    uint8_t *material, *body;    // [count]; material index, plus the number of materials where a grip protects the particle
+} body_particles;
+
+/* Samples everything. Errors: a body without volume or particles, a fibre direction that is zero (with the place), memory. */
+status bodies_sample(const scene *s, body_particles *out, report *r);
+void bodies_free(body_particles *p);
+
+#endif

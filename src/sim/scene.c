@@ -1,0 +1,147 @@
+#include "sim/scene.h"
+
+#include "base/names.h"
+#include "solid/solid.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+const effect *const *effect_catalogue(int *count) {
+    const solid_engine *engine = solid_engine_find(64, "plain");
+    *count = engine->effect_count;
+    return engine->effects;
+}
+
+int effect_index(const char *name) {
+    int count;
+    const effect *const *effects = effect_catalogue(&count);
+    for (int i = 0; i < count; i++)
+        if (strcmp(effects[i]->name, name) == 0) return i;
+    return -1;
+}
+
+status scene_function_evaluate(const scene_function *f, const double *input, int inputs, double *output, report *r) {
+    if (!f->call) {
+        for (int i = 0; i < f->outputs; i++) output[i] = f->constant[i];
+        return STATUS_OK;
+    }
+    status code = f->call(f->context, input, inputs, output, f->outputs, r);
+    for (int i = 0; code == STATUS_OK && i < f->outputs; i++)
+        if (!isfinite(output[i])) code = report_set(r, STATUS_INPUT, "a function of time or place gave %g", output[i]);
+    return code;
+}
+
+scene *scene_create(void) {
+    arena *memory = arena_create("scene");
+    scene *s = memory ? arena_allocate(memory, sizeof *s) : NULL;
+    if (!s) {
+        arena_destroy(memory);
+        return NULL;
+    }
+    *s = (scene){.memory = memory, .duration = 1, .fps = 24, .particles_per_cell = 8, .cfl = 0.5};
+    for (int c = 0; c < 3; c++) s->domain_minimum[c] = -HUGE_VAL, s->domain_maximum[c] = HUGE_VAL;
+    int count;
+    const effect *const *effects = effect_catalogue(&count);
+    for (int e = 0; e < count; e++) effect_values_default(effects[e], &s->effects[e]);
+    return s;
+}
+
+void scene_destroy(scene *s) {
+    if (s) arena_destroy(s->memory);
+}
+
+int64_t scene_frames(const scene *s) {
+    return (int64_t)llround(s->duration * s->fps);
+}
+
+/* The effects that a material names must find those they need. */
+static status check_needs(const scene_material *m, const effect *const *effects, int count, report *r) {
+    for (int e = 0; e < count; e++) {
+        if (!m->effects[e].on || !effects[e]->needs) continue;
+        int need = effect_index(effects[e]->needs);
+        if (need >= 0 && m->effects[need].on) continue;
+        char expected[128], found[128];
+        snprintf(expected, sizeof expected, "the effect '%s' beside '%s'", effects[e]->needs, effects[e]->name);
+        snprintf(found, sizeof found, "a material '%.60s' without it", m->name);
+        return report_input(r, m->file, m->line, effects[e]->name, expected, found, NULL);
+    }
+    return STATUS_OK;
+}
+
+static status check_material(scene_material *m, report *r) {
+    int count;
+    const effect *const *effects = effect_catalogue(&count);
+    if (!(m->density > 0) || !isfinite(m->density)) {
+        char found[48];
+        snprintf(found, sizeof found, "%g", m->density);
+        return report_input(r, m->file, m->line, "density", "a positive number", found, NULL);
+    }
+    status code = check_needs(m, effects, count, r);
+    for (int e = 0; e < count && code == STATUS_OK; e++)
+        if (m->effects[e].on && effects[e]->scope == SCOPE_MATERIAL)
+            code = effect_values_check(effects[e], &m->effects[e], m->effects, m->file, m->line, r);
+    if (code == STATUS_OK && !m->effects[effect_index("elastic")].on)
+        return report_input(r, m->file, m->line, "elastic", "a material with elasticity: elastic = { E = …, nu = … }", "none", NULL);
+    return code;
+}
+
+/* Damage that follows fibres, and fibres themselves, need directions. */
+static status check_fibres(const scene *s, const scene_body *b, report *r) {
+    const scene_material *m = &s->materials[b->material];
+    const effect_values *damage = &m->effects[effect_index("damage")], *fibres = &m->effects[effect_index("fibres")];
+    int count;
+    const effect *const *effects = effect_catalogue(&count);
+    const effect *damage_effect = effects[effect_index("damage")], *fibre_effect = effects[effect_index("fibres")];
+    int wanted = 0;
+    if (damage->on && damage->value[effect_parameter(damage_effect, "alpha")][0] != 0) wanted = 1;
+    if (fibres->on) wanted = 1;
+    if (damage->on && damage->value[effect_parameter(damage_effect, "alpha2")][0] != 0) wanted = 2;
+    if (fibres->on && fibres->value[effect_parameter(fibre_effect, "gamma2")][0] != 0) wanted = 2;
+    if (b->fibres.families >= wanted) return STATUS_OK;
+    char found[160];
+    snprintf(found, sizeof found, "%d in body '%.48s', whose material '%.48s' needs %d", b->fibres.families, b->name, m->name, wanted);
+    return report_input(r, s->file, 0, "fibres", "fibre directions", found, NULL);
+}
+
+static status check_body(const scene *s, const scene_body *b, report *r) {
+    double low[3], high[3];
+    if (!b->shape) return report_input(r, s->file, 0, "shape", "a shape", "nothing", NULL);
+    shape_bounds(b->shape, low, high);
+    for (int c = 0; c < 3; c++)
+        if (!isfinite(low[c]) || !isfinite(high[c]))
+            return report_input(r, s->file, 0, "shape", "a bounded shape for a body", "one without bounds", NULL);
+    if (b->material < 0 || b->material >= s->material_count)
+        return report_input(r, s->file, 0, "material", "a material", "nothing", NULL);
+    return check_fibres(s, b, r);
+}
+
+static status check_numbers(const scene *s, report *r) {
+    const struct {
+        const char *key;
+        double value, minimum, maximum;
+    } rows[] = {
+        {"duration", s->duration, 0, 1e9}, {"fps", s->fps, 1e-9, 1e9},
+        {"particles_per_cell", s->particles_per_cell, 0.125, 1000}, {"cfl", s->cfl, 1e-3, 1},
+        {"dx", s->dx, 0, 1e9}, {"dt", s->dt, 0, 1e9},
+        {"particles", (double)s->particles, 0, 5e8}, {"transfer_ratio", s->transfer_ratio, 0, 1},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (rows[i].value >= rows[i].minimum && rows[i].value <= rows[i].maximum) continue;
+        char expected[96], found[48];
+        snprintf(expected, sizeof expected, "a value from %g to %g", rows[i].minimum, rows[i].maximum);
+        snprintf(found, sizeof found, "%g", rows[i].value);
+        return report_input(r, s->file, 0, rows[i].key, expected, found, NULL);
+    }
+    return STATUS_OK;
+}
+
+status scene_validate(scene *s, report *r) {
+    if (s->body_count == 0) return report_input(r, s->file, 0, "solids", "at least one body", "none", NULL);
+    status code = check_numbers(s, r);
+    for (int i = 0; i < s->material_count && code == STATUS_OK; i++) code = check_material(&s->materials[i], r);
+    for (int i = 0; i < s->body_count && code == STATUS_OK; i++) code = check_body(s, &s->bodies[i], r);
+    if (code != STATUS_OK) return code;
+    s->effects[effect_index("boundary")].on = s->grip_count + s->collider_count > 0;
+    return STATUS_OK;
+}

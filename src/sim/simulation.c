@@ -1,0 +1,330 @@
+/* Scene → plan → stepping. */
+#include "base/memory.h"
+#include "base/threads.h"
+#include "sim/crack.h"
+#include "sim/internal.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* A frame that needs more steps than this will never end. */
+static const double STEPS_LIMIT = 5e6;
+
+static void motion_default(rigid_motion *m, const double pivot[3]) {
+    *m = (rigid_motion){.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    memcpy(m->pivot, pivot, sizeof m->pivot);
+}
+
+static void define_boundaries(const scene *s, solid_definition *d) {
+    for (int g = 0; g < s->grip_count; g++) {
+        solid_boundary *b = &d->boundaries[d->boundary_count++];
+        *b = (solid_boundary){.shape = s->grips[g].shape, .grip = true};
+        motion_default(&b->motion, s->grips[g].pivot);
+    }
+    for (int c = 0; c < s->collider_count; c++) {
+        solid_boundary *b = &d->boundaries[d->boundary_count++];
+        *b = (solid_boundary){.shape = s->colliders[c].shape, .contact = s->colliders[c].contact, .friction = s->colliders[c].friction};
+        motion_default(&b->motion, s->colliders[c].pivot);
+    }
+}
+
+/* Materials twice: as they are, and again for the particles that a grip protects from damage. */
+static void define_materials(simulation *s, solid_definition *d) {
+    const scene *from_scene = s->scene;
+    d->material_count = 2 * from_scene->material_count;
+    for (int m = 0; m < d->material_count; m++) {
+        const scene_material *from = &from_scene->materials[m % from_scene->material_count];
+        d->materials[m] = (solid_material){.density = from->density, .effects = from->effects, .protects = m >= from_scene->material_count};
+        for (int e = 0; e < s->engine->effect_count; e++)
+            if (from->effects[e].on) d->effect_mask |= 1u << e;
+    }
+    for (int e = 0; e < s->engine->effect_count; e++)
+        if (from_scene->effects[e].on && s->engine->effects[e]->scope == SCOPE_SCENE) d->effect_mask |= 1u << e;
+}
+
+static void define(simulation *s, int threads, solid_definition *d) {
+    const scene *from_scene = s->scene;
+    *d = (solid_definition){.threads = threads, .dx = s->particles.dx, .transfer = from_scene->transfer,
+                            .transfer_ratio = from_scene->transfer_ratio, .kernel = from_scene->kernel, .laplacian = from_scene->laplacian,
+                            .count = s->particles.count, .position = s->particles.position, .velocity = s->particles.velocity,
+                            .volume = s->particles.volume, .fibre1 = s->particles.fibre1, .fibre2 = s->particles.fibre2,
+                            .material = s->particles.material};
+    int gravity = effect_index("gravity");
+    if (from_scene->effects[gravity].on) memcpy(d->gravity, from_scene->effects[gravity].value[0], sizeof d->gravity);
+    define_materials(s, d);
+    define_boundaries(scene, d);
+}
+
+/* The momentum limit shrinks by the scene's cfl; others are limits as they stand. */
+static double smallest_limit(const simulation *s, double limits[EFFECT_LIMIT], int *which) {
+    double least = HUGE_VAL;
+    s->engine->limits(s->solid, limits);
+    *which = -1;
+    for (int e = 0; e < s->engine->effect_count; e++) {
+        if (strcmp(s->engine->effects[e]->name, "elastic") == 0) limits[e] *= s->scene->cfl;
+        if (limits[e] < least) least = limits[e], *which = e;
+    }
+    return least;
+}
+
+static void make_plan(simulation *s, const solid_definition *d) {
+    simulation_plan *p = &s->plan;
+    *p = (simulation_plan){.effect_count = s->engine->effect_count, .effects = s->engine->effects, .mask = d->effect_mask,
+                           .dx = d->dx, .spacing = s->particles.spacing, .particles = d->count, .threads = d->threads,
+                           .precision = s->engine->precision, .simd = s->engine->simd};
+    static const char *const built_in[] = {"position", "velocity", "affine_velocity", "deformation_gradient", "volume"};
+    int size = s->engine->precision / 8;
+    for (size_t i = 0; i < sizeof built_in / sizeof *built_in; i++) {
+        plan_field *f = &p->fields[p->field_count++];
+        snprintf(f->name, sizeof f->name, "%s", built_in[i]);
+        snprintf(f->effect, sizeof f->effect, "transfer");
+        f->bytes = s->engine->components(s->solid, built_in[i]) * size;
+    }
+    for (int e = 0; e < p->effect_count; e++)
+        for (int i = 0; (p->mask >> e & 1) && i < p->effects[e]->field_count; i++) {
+            const effect_field *from = &p->effects[e]->fields[i];
+            int components = s->engine->components(s->solid, from->key);
+            bool known = components == 0;
+            for (int k = 0; k < p->field_count; k++) known |= strcmp(p->fields[k].name, from->key) == 0;
+            if (known) continue;
+            plan_field *f = &p->fields[p->field_count++];
+            snprintf(f->name, sizeof f->name, "%s", from->key);
+            snprintf(f->effect, sizeof f->effect, "%s", p->effects[e]->name);
+            f->bytes = components * size;
+        }
+    p->bytes_per_particle = s->engine->bytes_per_particle(s->solid);
+    int which;
+    double least = smallest_limit(s, p->limits, &which), wanted = s->scene->dt > 0 ? s->scene->dt : least;
+    p->dt = s->frame_time / ceil(s->frame_time / wanted - 1e-9);
+}
+
+/* The engine has copied what it needs; rest positions and bodies stay for the measures. */
+static void drop_loading_arrays(body_particles *p) {
+    size_t n = (size_t)p->count, row_bytes = 3 * sizeof(double) * n;
+    memory_free(p->velocity, row_bytes);
+    memory_free(p->volume, n * sizeof(double));
+    memory_free(p->material, n);
+    memory_free(p->fibre1, row_bytes);
+    memory_free(p->fibre2, row_bytes);
+    p->velocity = p->volume = p->fibre1 = p->fibre2 = NULL;
+    p->material = NULL;
+}
+
+status simulation_create(const scene *definition, const simulation_options *options, simulation **out, report *r) {
+    *out = NULL;
+    const solid_engine *engine = solid_engine_find(options->precision, options->simd);
+    if (!engine)
+        return report_input(r, NULL, 0, "simd", "an instruction set of this processor: auto, plain, avx2 or avx512", options->simd, NULL);
+    simulation *s = memory_allocate(sizeof *s);
+    if (!s) return report_set(r, STATUS_SYSTEM, "out of memory for the simulation");
+    s->scene = definition;
+    s->engine = engine;
+    s->frame_time = 1 / definition->fps;
+    s->dt_min = HUGE_VAL;
+    solid_definition *d = memory_allocate(sizeof *d);
+    status code = d ? bodies_sample(definition, &s->particles, r) : report_set(r, STATUS_SYSTEM, "out of memory for the plan");
+    if (code == STATUS_OK) {
+        define(s, options->threads > 0 ? options->threads : processor_count(), d);
+        s->solid = engine->create(d, r);
+        code = s->solid ? STATUS_OK : r->code;
+    }
+    if (code == STATUS_OK) {
+        make_plan(s, d);
+        drop_loading_arrays(&s->particles);
+    }
+    memory_free(d, sizeof *d);
+    if (code != STATUS_OK) {
+        simulation_destroy(s);
+        return code;
+    }
+    *out = s;
+    return STATUS_OK;
+}
+
+void simulation_destroy(simulation *s) {
+    if (!s) return;
+    if (s->solid) s->engine->destroy(s->solid);
+    bodies_free(&s->particles);
+    memory_free(s, sizeof *s);
+}
+
+const simulation_plan *simulation_get_plan(const simulation *s) {
+    return &s->plan;
+}
+
+/* ---- stepping ---------------------------------------------------------------------------------------------------- */
+
+/* What grips and colliders share, from the scene. */
+typedef struct boundary_source {
+    const scene_function *velocity, *spin;
+    double start, stop;
+} boundary_source;
+
+static boundary_source source_of(const scene *s, int i) {
+    if (i < s->grip_count) {
+        const scene_grip *g = &s->grips[i];
+        return (boundary_source){&g->velocity, &g->spin, g->start, g->stop};
+    }
+    const scene_collider *c = &s->colliders[i - s->grip_count];
+    return (boundary_source){&c->velocity, &c->spin, c->start, c->stop};
+}
+
+/* Velocities in the middle of the step: positions of the boundaries are then second order in Δt. */
+static status drive_boundaries(simulation *s, double dt, report *r) {
+    solid_boundary *boundaries = s->engine->boundaries(s->solid);
+    double middle = s->time + 0.5 * dt;
+    for (int i = 0; i < s->scene->grip_count + s->scene->collider_count; i++) {
+        boundary_source from = source_of(s->scene, i);
+        rigid_motion *m = &boundaries[i].motion;
+        m->active = s->time >= from.start && s->time < from.stop;
+        status code = STATUS_OK;
+        if (from.velocity->outputs) code = scene_function_evaluate(from.velocity, &middle, 1, m->velocity, r);
+        if (code == STATUS_OK && from.spin->outputs) code = scene_function_evaluate(from.spin, &middle, 1, m->spin, r);
+        if (code != STATUS_OK) return code;
+    }
+    return STATUS_OK;
+}
+
+static void advance_boundaries(simulation *s, double dt) {
+    solid_boundary *boundaries = s->engine->boundaries(s->solid);
+    for (int i = 0; i < s->scene->grip_count + s->scene->collider_count; i++)
+        if (boundaries[i].motion.active) rigid_motion_advance(&boundaries[i].motion, dt);
+}
+
+static status one_step(simulation *s, double dt, report *r) {
+    status code = drive_boundaries(s, dt, r);
+    if (code != STATUS_OK) return code;
+    solid_fault fault;
+    code = s->engine->step(s->solid, dt, &fault, r);
+    if (code == STATUS_DIVERGED) {
+        char text[sizeof r->message];
+        snprintf(text, sizeof text, "step %lld, t = %.6g, frame %lld: %.400s", (long long)s->steps + 1, s->time, (long long)s->frame + 1,
+                 r->message);
+        return report_set(r, STATUS_DIVERGED, "%s", text);
+    }
+    if (code != STATUS_OK) return code;
+    advance_boundaries(s, dt);
+    s->steps++;
+    s->time += dt;
+    s->dt_min = fmin(s->dt_min, dt);
+    s->dt_max = fmax(s->dt_max, dt);
+    return STATUS_OK;
+}
+
+/* Says once what a user would want to know of the time step. */
+static void warn_of_limits(simulation *s, double dt, const double limits[EFFECT_LIMIT], int which, double least) {
+    const char *name = which >= 0 ? s->engine->effects[which]->name : "";
+    if (s->scene->dt > 0 && dt > least * (1 + 1e-9) && !s->warned_fixed) {
+        s->warned_fixed = true;
+        snprintf(s->warning, sizeof s->warning, "dt %.4g exceeds the limit %.4g of the effect '%s' at t = %.4g", dt, least, name, s->time);
+    }
+    int momentum = effect_index("elastic"), damage = effect_index("damage");
+    if (!s->warned_damage && limits[damage] < 0.05 * limits[momentum]) {
+        s->warned_damage = true;
+        snprintf(s->warning, sizeof s->warning,
+                 "explicit damage limits the step to %.3g, %.0f times under the momentum's %.3g: a larger eta, or damage in its implicit form, is faster",
+                 limits[damage], limits[momentum] / limits[damage], limits[momentum]);
+    }
+}
+
+/* The next step's length: what is left of the frame divided by the least whole number of steps within the limit. The number
+ * is kept while it holds, so that steps within a frame are equal unless the state asks for shorter ones. */
+static status choose_step(simulation *s, double left, int64_t *steps_left, double *dt, report *r) {
+    double limits[EFFECT_LIMIT];
+    int which;
+    double least = smallest_limit(s, limits, &which);
+    if (s->scene->dt > 0) {
+        if (*steps_left == 0) *steps_left = (int64_t)ceil(left / s->scene->dt - 1e-9);
+        *dt = left / (double)*steps_left;
+        warn_of_limits(s, *dt, limits, which, least);
+        return STATUS_OK;
+    }
+    double needed = ceil(left / least - 1e-9);
+    if (!(needed <= STEPS_LIMIT))
+        return report_set(r, STATUS_DIVERGED, "step %lld, t = %.6g: the effect '%s' limits the time step to %.3g, %.3g steps for the rest of the frame",
+                          (long long)s->steps + 1, s->time, which >= 0 ? s->engine->effects[which]->name : "?", least, needed);
+    if (needed < 1) needed = 1;
+    if (*steps_left == 0 || (double)*steps_left < needed) *steps_left = (int64_t)needed;
+    *dt = left / (double)*steps_left;
+    warn_of_limits(s, *dt, limits, which, least);
+    return STATUS_OK;
+}
+
+status simulation_step(simulation *s, double dt, report *r) {
+    int64_t steps_left = 0;
+    status code = dt > 0 ? STATUS_OK : choose_step(s, s->frame_time, &steps_left, &dt, r);
+    return code == STATUS_OK ? one_step(s, dt, r) : code;
+}
+
+status simulation_advance(simulation *s, const atomic_int *abandon, report *r) {
+    status code = s->engine->sort(s->solid, r);
+    if (code != STATUS_OK) return code;
+    double end = (double)(s->frame + 1) * s->frame_time, dt;
+    int64_t steps_left = 0;
+    do {
+        if (abandon && atomic_load(abandon)) return report_set(r, STATUS_INTERRUPTED, "left at step %lld", (long long)s->steps);
+        code = choose_step(s, end - s->time, &steps_left, &dt, r);
+        if (code == STATUS_OK) code = one_step(s, dt, r);
+        if (code != STATUS_OK) return code;
+    } while (--steps_left > 0);
+    s->frame++;
+    s->time = end; /* frames sit at exact multiples, not at sums of steps */
+    return STATUS_OK;
+}
+
+int64_t simulation_frame(const simulation *s) {
+    return s->frame;
+}
+
+double simulation_time(const simulation *s) {
+    return s->time;
+}
+
+int64_t simulation_steps(const simulation *s) {
+    return s->steps;
+}
+
+const char *simulation_take_warning(simulation *s) {
+    static _Thread_local char taken[sizeof s->warning];
+    memcpy(taken, s->warning, sizeof taken);
+    s->warning[0] = '\0';
+    return taken;
+}
+
+const uint8_t *simulation_bodies(const simulation *s) {
+    return s->particles.body;
+}
+
+const solid_engine *simulation_engine(const simulation *s, solid **state) {
+    *state = s->solid;
+    return s->engine;
+}
+
+/* ---- measures ---------------------------------------------------------------------------------------------------- */
+
+static status measure_crack(simulation *s, simulation_measures *m, report *r) {
+    if (m->solid.damage_max <= 0.5) return STATUS_OK;
+    size_t bytes = (size_t)s->particles.count * sizeof(double);
+    double *damage = memory_allocate(bytes);
+    if (!damage) return report_set(r, STATUS_SYSTEM, "out of memory for the crack measure");
+    status code = STATUS_OK;
+    if (s->engine->read(s->solid, "damage", damage))
+        code = crack_normal(s->particles.position, damage, s->particles.count, 1.3 * s->plan.dx, m->crack_normal, &m->has_crack, r);
+    memory_free(damage, bytes);
+    return code;
+}
+
+status simulation_measure(simulation *s, simulation_measures *m, report *r) {
+    *m = (simulation_measures){.dt_min = s->steps ? s->dt_min : 0, .dt_max = s->dt_max, .time = s->time, .frame = s->frame, .steps = s->steps};
+    status code = s->engine->measure(s->solid, &m->solid, r);
+    if (code != STATUS_OK) return code;
+    double stored = m->solid.kinetic + m->solid.elastic + m->solid.fibre + m->solid.gravitational;
+    if (!s->has_initial_energy) {
+        s->has_initial_energy = true;
+        s->initial_energy = stored;
+    }
+    m->dissipated = s->initial_energy + m->solid.grip_work - stored;
+    return measure_crack(s, m, r);
+}

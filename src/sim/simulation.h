@@ -1,0 +1,88 @@
+/* A simulation: a scene's plan, its particles and engines, advanced frame by frame. It knows no script, file or screen. */
+#ifndef SUNDER_SIM_SIMULATION_H
+#define SUNDER_SIM_SIMULATION_H
+
+#include "base/record.h"
+#include "sim/scene.h"
+#include "solid/solid.h"
+
+#include <stdatomic.h>
+
+typedef struct simulation simulation;
+
+typedef struct simulation_options {
+    int threads;      /* 0: every processor */
+    int precision;    /* 32 or 64 */
+    const char *simd; /* "auto" or a name */
+} simulation_options;
+
+/* What the plan says of a scene, for `explain` and for the ledger. */
+typedef struct plan_field {
+    char name[48], effect[32];
+    double bytes; /* a particle */
+} plan_field;
+
+typedef struct simulation_plan {
+    int effect_count;
+    const effect *const *effects; /* [effect_count], the engine's tables */
+    uint32_t mask;                /* on */
+    int field_count;
+    plan_field fields[16];
+    double bytes_per_particle; /* grid and sort buffers included */
+    double limits[EFFECT_LIMIT]; /* Δt, HUGE_VAL: none; from the initial state, cfl included */
+    double dt;                   /* the first step's */
+    double dx, spacing;
+    int64_t particles;
+    int threads, precision;
+    const char *simd;
+} simulation_plan;
+
+typedef struct simulation_measures {
+    solid_measures solid;
+    double dissipated;   /* energy that has left the balance since the start */
+    bool has_crack;      /* some damage is above 0.5 */
+    double crack_normal[3];
+    double dt_min, dt_max, time;
+    int64_t frame, steps;
+} simulation_measures;
+
+/* Samples the bodies, makes the plan and the engines. Errors: wrong input (found late), memory, a processor without `simd`. */
+status simulation_create(const scene *s, const simulation_options *options, simulation **out, report *r);
+void simulation_destroy(simulation *s);
+
+const simulation_plan *simulation_get_plan(const simulation *s);
+
+/* Advances by one frame. `abandon` (may be NULL) is looked at between steps: STATUS_INTERRUPTED leaves a state between frames that must
+ * not be written. STATUS_DIVERGED says effect, particle and step. */
+status simulation_advance(simulation *s, const atomic_int *abandon, report *r);
+
+/* One step of length dt, or of the automatic length when dt is 0; for tests and benchmarks. */
+status simulation_step(simulation *s, double dt, report *r);
+
+int64_t simulation_frame(const simulation *s);
+double simulation_time(const simulation *s);
+int64_t simulation_steps(const simulation *s);
+
+/* Measures of the state at a frame's end. Errors: out of memory. */
+status simulation_measure(simulation *s, simulation_measures *m, report *r);
+
+/* A frame's arrays in order of id: "solid/position" … in the run's precision. The caller clears the list. */
+status simulation_frame_records(const simulation *s, record_list *list, report *r);
+
+/* Everything needed to go on with the same bits, and back. */
+status simulation_save(const simulation *s, record_list *list, report *r);
+status simulation_restore(simulation *s, const record_list *list, report *r);
+
+/* A hash of (x, v, F, d) of all particles in order of id. Errors: out of memory. */
+status simulation_hash(const simulation *s, uint64_t *hash, report *r);
+
+/* The last warning about the time step, "" when there is none; cleared by the call. */
+const char *simulation_take_warning(simulation *s);
+
+/* Which body each particle belongs to, [particles] by id; owned by the simulation. */
+const uint8_t *simulation_bodies(const simulation *s);
+
+/* The engine and its state, for benchmarks and tests. */
+const solid_engine *simulation_engine(const simulation *s, solid **state);
+
+#endif

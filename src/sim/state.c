@@ -1,0 +1,116 @@
+/* A simulation's state as records: frames in order of id, checkpoints bit for bit, and hashes. */
+#include "base/memory.h"
+#include "sim/internal.h"
+
+#include <stdio.h>
+#include <string.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+/* Reads a field into a record of the run's precision. */
+static status add_field(const simulation *s, const char *field, const char *unit, record_list *list, report *r) {
+    int components = s->engine->components(s->solid, field);
+    if (components == 0) return STATUS_OK;
+    char name[RECORD_NAME];
+    snprintf(name, sizeof name, "solid/%s", field);
+    int64_t count = s->particles.count, values = count * components;
+    bool narrow = s->engine->precision == 32;
+    void *data;
+    status code = record_add(list, name, narrow ? RECORD_F32 : RECORD_F64, count, components, unit, &data, r);
+    if (code != STATUS_OK || !narrow) {
+        if (code == STATUS_OK) s->engine->read(s->solid, field, data);
+        return code;
+    }
+    double *wide = memory_allocate_array((size_t)values, sizeof *wide);
+    if (!wide) return report_set(r, STATUS_SYSTEM, "out of memory for the field '%s'", field);
+    s->engine->read(s->solid, field, wide);
+    for (int64_t i = 0; i < values; i++) ((float *)data)[i] = (float)wide[i];
+    memory_free(wide, (size_t)values * sizeof *wide);
+    return STATUS_OK;
+}
+
+static status add_ids(const simulation *s, record_list *list, report *r) {
+    void *data;
+    status code = record_add(list, "solid/id", RECORD_I32, s->particles.count, 1, "1", &data, r);
+    for (int64_t i = 0; code == STATUS_OK && i < s->particles.count; i++) ((int32_t *)data)[i] = (int32_t)i;
+    if (code == STATUS_OK) code = record_add(list, "solid/body", RECORD_I32, s->particles.count, 1, "1", &data, r);
+    for (int64_t i = 0; code == STATUS_OK && i < s->particles.count; i++) ((int32_t *)data)[i] = s->particles.body[i];
+    return code;
+}
+
+status simulation_frame_records(const simulation *s, record_list *list, report *r) {
+    status code = add_field(s, "position", "length", list, r);
+    if (code == STATUS_OK) code = add_field(s, "velocity", "length/time", list, r);
+    if (code == STATUS_OK) code = add_ids(s, list, r);
+    if (code == STATUS_OK) code = add_field(s, "deformation_gradient", "1", list, r);
+    for (int e = 0; e < s->plan.effect_count && code == STATUS_OK; e++)
+        for (int i = 0; i < s->plan.effects[e]->field_count && code == STATUS_OK; i++) {
+            const effect_field *f = &s->plan.effects[e]->fields[i];
+            char name[RECORD_NAME];
+            snprintf(name, sizeof name, "solid/%s", f->key);
+            if (f->written && (s->plan.mask >> e & 1) && !record_find(list, name)) code = add_field(s, f->key, f->unit, list, r);
+        }
+    return code;
+}
+
+/* ---- checkpoints ------------------------------------------------------------------------------------------------- */
+
+enum { CLOCK_INTEGERS = 4, CLOCK_REALS = 4, MOTION_REALS = 12 };
+
+status simulation_save(const simulation *s, record_list *list, report *r) {
+    int64_t *integers = NULL;
+    double *reals = NULL, *motions = NULL;
+    int boundaries = s->scene->grip_count + s->scene->collider_count;
+    status code = record_add(list, "sim/integers", RECORD_I64, CLOCK_INTEGERS, 1, NULL, (void **)&integers, r);
+    if (code == STATUS_OK) code = record_add(list, "sim/reals", RECORD_F64, CLOCK_REALS, 1, NULL, (void **)&reals, r);
+    if (code == STATUS_OK) code = record_add(list, "sim/motions", RECORD_F64, boundaries, MOTION_REALS, NULL, (void **)&motions, r);
+    if (code != STATUS_OK) return code;
+    memcpy(integers, (int64_t[]){s->frame, s->steps, s->has_initial_energy, s->warned_fixed + 2 * s->warned_damage}, CLOCK_INTEGERS * sizeof *integers);
+    memcpy(reals, (double[]){s->time, s->dt_min, s->dt_max, s->initial_energy}, CLOCK_REALS * sizeof *reals);
+    const solid_boundary *b = s->engine->boundaries(s->solid);
+    for (int i = 0; i < boundaries; i++) {
+        memcpy(motions + i * MOTION_REALS, b[i].motion.translation, 3 * sizeof *motions);
+        memcpy(motions + i * MOTION_REALS + 3, b[i].motion.rotation, 9 * sizeof *motions);
+    }
+    return s->engine->save(s->solid, list, r);
+}
+
+status simulation_restore(simulation *s, const record_list *list, report *r) {
+    int64_t *integers;
+    double *reals, *motions;
+    int boundaries = s->scene->grip_count + s->scene->collider_count;
+    status code = record_require(list, "sim/integers", RECORD_I64, CLOCK_INTEGERS, 1, (void **)&integers, r);
+    if (code == STATUS_OK) code = record_require(list, "sim/reals", RECORD_F64, CLOCK_REALS, 1, (void **)&reals, r);
+    if (code == STATUS_OK) code = record_require(list, "sim/motions", RECORD_F64, boundaries, MOTION_REALS, (void **)&motions, r);
+    if (code == STATUS_OK) code = s->engine->restore(s->solid, list, r);
+    if (code != STATUS_OK) return code;
+    s->frame = integers[0];
+    s->steps = integers[1];
+    s->has_initial_energy = integers[2] != 0;
+    s->warned_fixed = integers[3] & 1;
+    s->warned_damage = integers[3] >> 1 & 1;
+    s->time = reals[0];
+    s->dt_min = reals[1];
+    s->dt_max = reals[2];
+    s->initial_energy = reals[3];
+    solid_boundary *b = s->engine->boundaries(s->solid);
+    for (int i = 0; i < boundaries; i++) {
+        memcpy(b[i].motion.translation, motions + i * MOTION_REALS, 3 * sizeof *motions);
+        memcpy(b[i].motion.rotation, motions + i * MOTION_REALS + 3, 9 * sizeof *motions);
+    }
+    return STATUS_OK;
+}
+
+status simulation_hash(const simulation *s, uint64_t *hash, report *r) {
+    static const char *const fields[] = {"position", "velocity", "deformation_gradient", "damage"};
+    size_t bytes = (size_t)s->particles.count * 9 * sizeof(double);
+    double *values = memory_allocate(bytes);
+    if (!values) return report_set(r, STATUS_SYSTEM, "out of memory for the state's hash");
+    *hash = 0;
+    for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
+        int components = s->engine->read(s->solid, fields[i], values);
+        *hash = XXH3_64bits_withSeed(values, (size_t)s->particles.count * (size_t)components * sizeof *values, *hash);
+    }
+    memory_free(values, bytes);
+    return STATUS_OK;
+}

@@ -1,0 +1,84 @@
+/* Grips and colliders: rigid shapes that set the velocity of the grid nodes inside them.
+ *
+ * A grip prescribes its own velocity. A collider is sticky (the same), slips (no normal motion relative to it) or separates
+ * (may leave, not enter), the latter two with Coulomb friction. What they put in is counted: impulse on the nodes, and work as
+ * that impulse times the boundary's velocity. */
+#include "solid/state.h"
+
+#include <math.h>
+
+/* The velocity that the boundary leaves a node with; v is the node's, u the boundary's at that place. */
+static void contact_velocity(const solid_boundary *b, const double rest[3], double dx, const double u[3], double v[3]) {
+    if (b->grip || b->contact == CONTACT_STICKY) {
+        for (int c = 0; c < 3; c++) v[c] = u[c];
+        return;
+    }
+    double local[3], n[3] = {0, 0, 0};
+    shape_normal(b->shape, rest, 1e-3 * dx, local);
+    for (int row = 0; row < 3; row++)
+        for (int c = 0; c < 3; c++) n[row] += b->motion.rotation[row * 3 + c] * local[c];
+    double relative[3] = {v[0] - u[0], v[1] - u[1], v[2] - u[2]};
+    double normal_speed = relative[0] * n[0] + relative[1] * n[1] + relative[2] * n[2];
+    if (b->contact == CONTACT_SEPARATE && normal_speed >= 0) return;
+    double tangent[3], tangent_speed = 0;
+    for (int c = 0; c < 3; c++) {
+        tangent[c] = relative[c] - normal_speed * n[c];
+        tangent_speed += tangent[c] * tangent[c];
+    }
+    tangent_speed = sqrt(tangent_speed);
+    double lost = b->friction * fabs(normal_speed);
+    double keep = tangent_speed > lost ? 1 - lost / tangent_speed : 0;
+    for (int c = 0; c < 3; c++) v[c] = u[c] + keep * tangent[c];
+}
+
+/* Applies one boundary to one node at world position x. */
+static void apply_to_node(const solid_boundary *b, const double x[3], double dx, real *node, block_result *result) {
+    double rest[3];
+    rigid_motion_to_rest(&b->motion, x, rest);
+    if (shape_distance(b->shape, rest) >= 0) return;
+    double u[3], v[3] = {(double)node[0], (double)node[1], (double)node[2]}, mass = (double)node[3];
+    double before[3] = {v[0], v[1], v[2]};
+    rigid_motion_velocity(&b->motion, x, u);
+    contact_velocity(b, rest, dx, u, v);
+    for (int c = 0; c < 3; c++) {
+        double impulse = mass * (v[c] - before[c]);
+        result->grip_impulse[c] += impulse;
+        result->grip_work += impulse * u[c];
+        node[c] = (real)v[c];
+    }
+}
+
+static void hold(const grid_work *w) {
+    const solid *s = w->state;
+    double dx = s->definition.dx;
+    const int32_t *block = s->slot_coordinate[w->slot];
+    double corner[3], center[3], reach = 0.5 * sqrt(3.0) * (BLOCK - 1) * dx;
+    for (int c = 0; c < 3; c++) {
+        corner[c] = (double)block[c] * BLOCK * dx;
+        center[c] = corner[c] + 0.5 * (BLOCK - 1) * dx;
+    }
+    for (int i = 0; i < s->definition.boundary_count; i++) {
+        const solid_boundary *b = &s->definition.boundaries[i];
+        if (!b->motion.active) continue;
+        double rest[3];
+        rigid_motion_to_rest(&b->motion, center, rest);
+        if (shape_distance(b->shape, rest) > reach) continue; /* the whole block is outside */
+        for (int node = 0; node < BLOCK_NODES; node++) {
+            real *n = w->nodes + node * NODE;
+            if (!(n[3] > 0)) continue;
+            double x[3] = {corner[0] + dx * (node / 16), corner[1] + dx * (node / 4 % 4), corner[2] + dx * (node % 4)};
+            apply_to_node(b, x, dx, n, w->result);
+        }
+    }
+}
+
+static const effect_measure measures[] = {
+    {"grip_work", "mass length^2/time^2", "work that grips and colliders have done on the material"},
+};
+
+static const solid_stages stages = {.grid = hold};
+
+const effect SOLID_EFFECT(boundary) = {
+    .name = "boundary", .engine = ENGINE_SOLID, .scope = SCOPE_SCENE, .doc = "grips, colliders and walls of the scene",
+    .reference = "METHOD.md section 3", .measures = measures, .measure_count = 1, .stages = &stages,
+};

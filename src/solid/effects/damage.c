@@ -1,0 +1,237 @@
+/* Damage of the matrix: explicit, geometric, anisotropic (AnisoMPM §3, §4.3; METHOD.md §2).
+ *
+ * σ is the undegraded Cauchy stress of the matrix; it shares its eigenvectors n_i with b = F Fᵀ, because τ = μ b + p I. One
+ * symmetric eigen-decomposition of b therefore gives σ⁺ and, through V⁻¹ F a = Σ (n_i · F a)/s_i n_i, the rotated fibres R a.
+ *     Φ = tr(A σ⁺ A σ⁺)/σc²,  A = I + α1 (R a1)(R a1)ᵀ + α2 (R a2)(R a2)ᵀ
+ *     H ← min(max(H, ζ⟨Φ − 1⟩), 1e6),  d ← min(1, d + Δt/η ⟨(1 − d) H − (d − l0² Δd)⟩)
+ * A's eigenvalues lie in [0, 1], so Φ ≤ |σ|²/σc²: where that bound cannot raise H, nothing is decomposed. */
+#include "solid/tensor.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { ETA_INVERSE, CRITICAL_INVERSE2, ALPHA1, ALPHA2, RESIDUAL, ZETA, LENGTH2, MU, LAMBDA, FROZEN, LAPLACIAN_BOUND };
+enum { KEY_SIGMA_C, KEY_BREAK_STRETCH, KEY_ETA, KEY_ALPHA, KEY_ALPHA2, KEY_RESIDUAL, KEY_ZETA, KEY_LENGTH_SCALE, KEY_COUNT };
+
+#define DRIVING_LIMIT ((real)1e6)
+#define BOUND_MARGIN ((real)0.999) /* the early out's bound holds up to round-off */
+
+static void constants(const effect_values *all, const solid_definition *d, bool protects, real out[CONSTANTS]) {
+    const effect_values *own = &all[EFFECT_damage];
+    real elastic[CONSTANTS];
+    const solid_stages *elastic_stages = SOLID_EFFECT(elastic).stages;
+    elastic_stages->constants(all, d, protects, elastic);
+    double sigma_c = own->value[KEY_SIGMA_C][0], length = own->value[KEY_LENGTH_SCALE][0];
+    if (length == 0) length = 0.5 * d->dx;
+    out[ETA_INVERSE] = (real)(1 / own->value[KEY_ETA][0]);
+    out[CRITICAL_INVERSE2] = (real)(1 / (sigma_c * sigma_c));
+    out[ALPHA1] = (real)own->value[KEY_ALPHA][0];
+    out[ALPHA2] = (real)own->value[KEY_ALPHA2][0];
+    out[RESIDUAL] = (real)own->value[KEY_RESIDUAL][0];
+    out[ZETA] = (real)own->value[KEY_ZETA][0];
+    out[LENGTH2] = (real)(length * length);
+    out[MU] = elastic[0];
+    out[LAMBDA] = elastic[1];
+    out[FROZEN] = protects ? 1 : 0;
+    /* Σ|N''| = 4 a direction for both splines: no discrete Laplacian of values in [0,1] exceeds 12/dx². */
+    out[LAPLACIAN_BOUND] = (real)(12 * length * length / (d->dx * d->dx));
+}
+
+/* g(d) = (1 − d)² (1 − r) + r */
+static void degrade(tile_work *w) {
+    const solid_field *damage = &w->state->fields[w->state->damage_field];
+    real r = w->constants[RESIDUAL];
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            vec left = 1 - vec_load(field_at(damage, w->tile->first_pack + k, 0, part));
+            vec_store(scratch_at(w->scratch->degradation, 1, k, 0, part), vec_fma(left * left, vec_all(1 - r), vec_all(r)));
+        }
+}
+
+/* R a for one family: Σ (n_i · F a)/s_i n_i. */
+SIMD_INLINE vec3v rotated_fibre(const eigen3v *e, vec3v inverse_stretch, vec3v f) {
+    vec c1 = vec3v_dot(e->first, f) * inverse_stretch.x, c2 = vec3v_dot(e->second, f) * inverse_stretch.y,
+        c3 = vec3v_dot(e->third, f) * inverse_stretch.z;
+    return (vec3v){vec_fma(c1, e->first.x, vec_fma(c2, e->second.x, c3 * e->third.x)),
+                   vec_fma(c1, e->first.y, vec_fma(c2, e->second.y, c3 * e->third.y)),
+                   vec_fma(c1, e->first.z, vec_fma(c2, e->second.z, c3 * e->third.z))};
+}
+
+/* Squared length of A's action on one family, subtracted from tr(A S A S) step by step would need the general product; it is
+ * cheaper to form A explicitly: six components. */
+SIMD_INLINE void add_structure(sym3v *A, vec3v f, real alpha) {
+    A->xx = vec_fma(alpha * f.x, f.x, A->xx);
+    A->yy = vec_fma(alpha * f.y, f.y, A->yy);
+    A->zz = vec_fma(alpha * f.z, f.z, A->zz);
+    A->xy = vec_fma(alpha * f.x, f.y, A->xy);
+    A->yz = vec_fma(alpha * f.y, f.z, A->yz);
+    A->xz = vec_fma(alpha * f.x, f.z, A->xz);
+}
+
+/* A applied to n. */
+SIMD_INLINE vec3v sym3v_times(sym3v A, vec3v n) {
+    return (vec3v){vec_fma(A.xx, n.x, vec_fma(A.xy, n.y, A.xz * n.z)), vec_fma(A.xy, n.x, vec_fma(A.yy, n.y, A.yz * n.z)),
+                   vec_fma(A.xz, n.x, vec_fma(A.yz, n.y, A.zz * n.z))};
+}
+
+/* tr(A S A S) with S = Σ s_i n_i n_iᵀ is Σ_ij s_i s_j (n_i · A n_j)²: no cancellation, never negative. */
+SIMD_INLINE vec driving_form(sym3v A, const eigen3v *e, vec3v s) {
+    vec3v a1 = sym3v_times(A, e->first), a2 = sym3v_times(A, e->second), a3 = sym3v_times(A, e->third);
+    vec m11 = vec3v_dot(e->first, a1), m22 = vec3v_dot(e->second, a2), m33 = vec3v_dot(e->third, a3);
+    vec m12 = vec3v_dot(e->first, a2), m23 = vec3v_dot(e->second, a3), m13 = vec3v_dot(e->first, a3);
+    vec mixed = vec_fma(s.x * s.y, m12 * m12, vec_fma(s.y * s.z, m23 * m23, s.x * s.z * m13 * m13));
+    vec pure = vec_fma(s.x * s.x, m11 * m11, vec_fma(s.y * s.y, m22 * m22, s.z * s.z * m33 * m33));
+    return pure + mixed + mixed;
+}
+
+/* Φ σc² of the particles whose bound says that it could matter. */
+SIMD_INLINE vec driving_stress(const tile_work *w, int32_t pack, int part, mat3v F, sym3v b, vec J, vec pressure) {
+    const real *c = w->constants;
+    eigen3v e = sym3v_eigen(b);
+    vec tiny = vec_all((real)1e-20), inverse_J = 1 / vec_max(J, vec_all((real)1e-3));
+    vec3v positive = {vec_max(vec_fma(vec_all(c[MU]), e.value.x, pressure) * inverse_J, vec_all(0)),
+                      vec_max(vec_fma(vec_all(c[MU]), e.value.y, pressure) * inverse_J, vec_all(0)),
+                      vec_max(vec_fma(vec_all(c[MU]), e.value.z, pressure) * inverse_J, vec_all(0))};
+    sym3v A = {vec_all(1), vec_all(1), vec_all(1), vec_all(0), vec_all(0), vec_all(0)};
+    if (c[ALPHA1] != 0 || c[ALPHA2] != 0) {
+        vec3v inverse = {1 / vec_sqrt(vec_max(e.value.x, tiny)), 1 / vec_sqrt(vec_max(e.value.y, tiny)),
+                         1 / vec_sqrt(vec_max(e.value.z, tiny))};
+        if (c[ALPHA1] != 0 && w->state->fibre_field >= 0) {
+            vec3v f = mat3v_times(F, vec3v_load(&w->state->fields[w->state->fibre_field], pack, part));
+            add_structure(&A, rotated_fibre(&e, inverse, f), c[ALPHA1]);
+        }
+        if (c[ALPHA2] != 0 && w->state->fibre2_field >= 0) {
+            vec3v f = mat3v_times(F, vec3v_load(&w->state->fields[w->state->fibre2_field], pack, part));
+            add_structure(&A, rotated_fibre(&e, inverse, f), c[ALPHA2]);
+        }
+    }
+    return driving_form(A, &e, positive);
+}
+
+/* The history's new value from this step's F. */
+SIMD_INLINE vec history(const tile_work *w, int32_t pack, int part, vec d, vec H) {
+    const real *c = w->constants;
+    mat3v F = mat3v_load(&w->state->fields[FIELD_DEFORMATION], pack, part);
+    vec J = mat3v_determinant(F);
+    sym3v b = mat3v_gram(F);
+    vec pressure = J * vec_fma(vec_all(c[LAMBDA]), J - 1, vec_all(-c[MU]));
+    sym3v tau = {vec_fma(vec_all(c[MU]), b.xx, pressure), vec_fma(vec_all(c[MU]), b.yy, pressure),
+                 vec_fma(vec_all(c[MU]), b.zz, pressure), c[MU] * b.xy, c[MU] * b.yz, c[MU] * b.xz};
+    vec inverse_J = 1 / vec_max(J, vec_all((real)1e-3));
+    vec bound = sym3v_square_sum(tau) * inverse_J * inverse_J * c[CRITICAL_INVERSE2];
+    vec_mask open = (bound > BOUND_MARGIN * (1 + H * (1 / c[ZETA]))) & (J > 0) & (d < 1);
+    if (!vec_any(open)) return H;
+    vec phi = driving_stress(w, pack, part, F, b, J, pressure) * c[CRITICAL_INVERSE2];
+    vec raised = vec_min(vec_max(c[ZETA] * (phi - 1), H), vec_all(DRIVING_LIMIT));
+    return vec_select(open, raised, H);
+}
+
+static void update(tile_work *w) {
+    const solid_field *damage = &w->state->fields[w->state->damage_field];
+    const solid_field *histories = &w->state->fields[w->state->history_field];
+    const real *c = w->constants;
+    if (c[FROZEN] != 0) return;
+    real rate = w->dt * c[ETA_INVERSE];
+    vec limit = vec_all(0);
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            int32_t pack = w->tile->first_pack + k;
+            vec d = vec_load(field_at(damage, pack, 0, part)), H = vec_load(field_at(histories, pack, 0, part));
+            H = history(w, pack, part, d, H);
+            vec spread = c[LENGTH2] * vec_load(scratch_at(w->scratch->laplacian, 1, k, 0, part));
+            vec growth = vec_max(vec_fma(1 - d, H, spread - d), vec_all(0));
+            d = vec_min(vec_fma(vec_all(rate), growth, d), vec_all(1));
+            vec_store(field_at(damage, pack, 0, part), d);
+            vec_store(field_at(histories, pack, 0, part), H);
+            vec alive = vec_load(field_at(&w->state->fields[FIELD_VOLUME], pack, 0, part));
+            vec here = (1 + H + c[LAPLACIAN_BOUND]) * c[ETA_INVERSE];
+            limit = vec_max(vec_select((d < 1) & (alive > 0) & (H > 0), here, vec_all(0)), limit);
+        }
+    w->result->limit[w->effect] = vec_largest(limit);
+}
+
+/* ---- the table --------------------------------------------------------------------------------------------------- */
+
+/* σc from a stretch p: the energy density of (1 + p) I, undegraded, without fibres, with the plain Lamé λ whatever `lame`
+ * is, so that the papers' numbers hold (FACTS.md §1). */
+static double critical_from_stretch(const effect_values *elastic, double p) {
+    double E = elastic->value[0][0], nu = elastic->value[1][0];
+    double mu = E / (2 * (1 + nu)), lambda = E * nu / ((1 + nu) * (1 - 2 * nu));
+    double s = 1 + p, growth = p * (3 + p * (3 + p)); /* J − 1 */
+    return 1.5 * mu * (s * s - 1) - mu * growth + 0.5 * lambda * growth * growth;
+}
+
+/* The smallest p > 0 with that energy, by doubling and bisection; the energy grows from p = 0 for every admissible (E, ν) as
+ * far as the search goes, or the search says so. */
+static status stretch_from_critical(const effect_values *elastic, double sigma_c, double *p, report *r) {
+    double low = 0, high = 1e-6;
+    while (critical_from_stretch(elastic, high) < sigma_c) {
+        low = high;
+        high *= 1.5;
+        if (high > 1e4)
+            return report_input(r, NULL, 0, "damage.sigma_c", "a value that some stretch below 1e4 reaches", "one that none does", NULL);
+    }
+    for (int i = 0; i < 200; i++) {
+        double middle = 0.5 * (low + high);
+        if (critical_from_stretch(elastic, middle) < sigma_c) low = middle;
+        else high = middle;
+    }
+    *p = 0.5 * (low + high);
+    return STATUS_OK;
+}
+
+static status resolve(effect_values *own, const effect_values *all, report *r) {
+    const effect_values *elastic = &all[EFFECT_elastic];
+    if (!elastic->on) return STATUS_OK; /* `needs` reports it */
+    if (own->given[KEY_SIGMA_C])
+        return stretch_from_critical(elastic, own->value[KEY_SIGMA_C][0], &own->value[KEY_BREAK_STRETCH][0], r);
+    double sigma_c = critical_from_stretch(elastic, own->value[KEY_BREAK_STRETCH][0]);
+    own->value[KEY_SIGMA_C][0] = sigma_c;
+    if (sigma_c > 0) return STATUS_OK;
+    char found[64];
+    snprintf(found, sizeof found, "%g (critical value %g)", own->value[KEY_BREAK_STRETCH][0], sigma_c);
+    return report_input(r, NULL, 0, "damage.break_stretch", "a stretch whose critical value is positive", found, NULL);
+}
+
+static const parameter parameters[KEY_COUNT] = {
+    [KEY_SIGMA_C] = {.key = "sigma_c", .unit = "mass/(length time^2)", .doc = "critical stress: damage starts above it",
+                     .minimum = 1e-12, .maximum = 1e18, .fallback = {1}, .live = true, .logarithmic = true,
+                     .required = true, .twin = "break_stretch"},
+    [KEY_BREAK_STRETCH] = {.key = "break_stretch", .unit = "1",
+                           .doc = "stretch whose energy density sets sigma_c (0.2: about 20 %)", .minimum = 1e-6,
+                           .maximum = 100, .fallback = {0.2}, .live = true, .logarithmic = true, .twin = "sigma_c"},
+    [KEY_ETA] = {.key = "eta", .unit = "time", .doc = "viscosity of damage: larger is more ductile, smaller more brittle",
+                 .minimum = 1e-12, .maximum = 1e6, .fallback = {0.1}, .live = true, .logarithmic = true},
+    [KEY_ALPHA] = {.key = "alpha", .unit = "1",
+                   .doc = "-1: stress along the first fibres does no damage, cracks run along them; 0: isotropic",
+                   .minimum = -1, .maximum = 0, .live = true},
+    [KEY_ALPHA2] = {.key = "alpha2", .unit = "1", .doc = "the same for the second family", .minimum = -1, .live = true},
+    [KEY_RESIDUAL] = {.key = "residual", .unit = "1", .doc = "stiffness that a broken particle keeps", .maximum = 1,
+                      .fallback = {0.01}, .live = true},
+    [KEY_ZETA] = {.key = "zeta", .unit = "1", .doc = "slope of damage above the critical stress", .minimum = 1e-6,
+                  .maximum = 1e6, .fallback = {1}, .live = true, .logarithmic = true},
+    [KEY_LENGTH_SCALE] = {.key = "length_scale", .unit = "length", .doc = "half width of a crack; 0: half the grid spacing",
+                          .maximum = 1e9},
+};
+
+static const effect_field fields[] = {
+    {.key = "damage", .components = 1, .unit = "1", .written = true, .doc = "0 whole, 1 broken"},
+    {.key = "damage_history", .components = 1, .unit = "1", .written = false, .doc = "largest driving force so far"},
+    {.key = "fibre", .components = 3, .unit = "1", .written = true, .doc = "first fibre direction at rest, unit"},
+    {.key = "fibre2", .components = 3, .unit = "1", .written = true, .doc = "second fibre direction at rest, unit"},
+};
+
+static const effect_measure measures[] = {
+    {"damage_mean", "1", "mean damage"},
+    {"damage_max", "1", "largest damage"},
+    {"broken_fraction", "1", "fraction of particles over 0.9"},
+};
+
+static const solid_stages stages = {.constants = constants, .degrade = degrade, .update = update};
+
+const effect SOLID_EFFECT(damage) = {
+    .name = "damage", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "anisotropic damage of the matrix, explicit",
+    .reference = "AnisoMPM sections 3, 4.3; METHOD.md section 2", .parameters = parameters, .parameter_count = KEY_COUNT,
+    .fields = fields, .field_count = 4, .measures = measures, .measure_count = 3, .resolve = resolve, .needs = "elastic",
+    .stages = &stages,
+};

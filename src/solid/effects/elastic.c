@@ -1,0 +1,104 @@
+/* Elasticity of the matrix, in closed form.
+ *
+ * Ψμ + Ψλ = μ/2 (|F|² − 3) − μ (J − 1) + λ/2 (J − 1)²  (AnisoMPM §5, METHOD.md §1). The paper writes it with the factors of
+ * F = QR; Σ r_ij² = |F|², so no decomposition is needed. Because cof F Fᵀ = J I, the Kirchhoff stress is
+ *     τ = P Fᵀ = μ F Fᵀ + (λ (J − 1) − μ) J I.
+ * Polynomial: defined for every F, inverted ones included. Damage scales Ψμ always and Ψλ only in tension (J ≥ 1). */
+#include "solid/tensor.h"
+
+enum { MU, LAMBDA };
+enum { KEY_E, KEY_NU, KEY_LAME };
+
+static void constants(const effect_values *all, const solid_definition *d, bool protects, real out[CONSTANTS]) {
+    (void)d, (void)protects;
+    const effect_values *own = &all[EFFECT_elastic];
+    double E = own->value[KEY_E][0], nu = own->value[KEY_NU][0];
+    double mu = E / (2 * (1 + nu)), lame = E * nu / ((1 + nu) * (1 - 2 * nu));
+    bool consistent = own->value[KEY_LAME][0] == 0;
+    out[MU] = (real)mu;
+    /* Linearised, this energy is μ ε:ε + (λ − μ)/2 (tr ε)²: the extra μ makes (E, ν) mean what they say. */
+    out[LAMBDA] = (real)(consistent ? lame + mu : lame);
+}
+
+/* g where the λ term is in tension, 1 where it is in compression. */
+SIMD_INLINE vec volumetric_degradation(vec J, vec g) {
+    return vec_select(J >= 1, g, vec_all(1));
+}
+
+static void stress(tile_work *w) {
+    const solid_field *F_field = &w->state->fields[FIELD_DEFORMATION];
+    real mu = w->constants[MU], lambda = w->constants[LAMBDA];
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            mat3v F = mat3v_load(F_field, w->tile->first_pack + k, part);
+            vec g = vec_load(scratch_at(w->scratch->degradation, 1, k, 0, part));
+            vec J = mat3v_determinant(F);
+            sym3v b = mat3v_gram(F);
+            /* g μ (b − J I) + g₊ λ (J − 1) J I */
+            vec g_mu = g * mu;
+            vec pressure = J * vec_fma(volumetric_degradation(J, g) * lambda, J - 1, -g_mu);
+            real *tau = w->scratch->kirchhoff;
+            vec_store(scratch_at(tau, 6, k, 0, part), vec_fma(g_mu, b.xx, pressure));
+            vec_store(scratch_at(tau, 6, k, 1, part), vec_fma(g_mu, b.yy, pressure));
+            vec_store(scratch_at(tau, 6, k, 2, part), vec_fma(g_mu, b.zz, pressure));
+            vec_store(scratch_at(tau, 6, k, 3, part), g_mu * b.xy);
+            vec_store(scratch_at(tau, 6, k, 4, part), g_mu * b.yz);
+            vec_store(scratch_at(tau, 6, k, 5, part), g_mu * b.xz);
+        }
+}
+
+/* ρ0 c² ≤ g μ |F|₂² + g₊ λ J²: acoustic tensor of this energy in space (METHOD.md §3). */
+static void wave(tile_work *w) {
+    const solid_field *F_field = &w->state->fields[FIELD_DEFORMATION];
+    real mu = w->constants[MU], lambda = w->constants[LAMBDA];
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            mat3v F = mat3v_load(F_field, w->tile->first_pack + k, part);
+            vec g = vec_load(scratch_at(w->scratch->degradation, 1, k, 0, part));
+            vec J = mat3v_determinant(F);
+            vec shear = g * mu * sym3v_largest_bound(mat3v_gram(F));
+            vec bulk = volumetric_degradation(J, g) * lambda * J * J;
+            real *modulus = scratch_at(w->scratch->wave_modulus, 1, k, 0, part);
+            vec_store(modulus, vec_load(modulus) + shear + bulk);
+        }
+}
+
+/* In f64 particle by particle: |F|² − 3 and J − 1 cancel near rest. */
+static void energy(tile_work *w) {
+    const solid_field *F_field = &w->state->fields[FIELD_DEFORMATION];
+    double mu = (double)w->constants[MU], lambda = (double)w->constants[LAMBDA];
+    for (int p = 0; p < w->tile->count; p++) {
+        int k = p / PACK, lane = p % PACK;
+        double F[9];
+        for (int c = 0; c < 9; c++) F[c] = (double)field_at(F_field, w->tile->first_pack + k, c, 0)[lane];
+        double J = F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+        double square = 0;
+        for (int c = 0; c < 9; c++) square += F[c] * F[c];
+        double g = (double)w->scratch->degradation[k * PACK + lane], g_volume = J >= 1 ? g : 1;
+        double density = g * mu * (0.5 * (square - 3) - (J - 1)) + g_volume * 0.5 * lambda * (J - 1) * (J - 1);
+        w->energy[0] += density * (double)field_at(&w->state->fields[FIELD_VOLUME], w->tile->first_pack + k, 0, 0)[lane];
+    }
+}
+
+static const char *const lame_choices[] = {"consistent", "paper", NULL};
+
+static const parameter parameters[] = {
+    [KEY_E] = {.key = "E", .unit = "mass/(length time^2)", .doc = "Young's modulus of the matrix", .minimum = 1e-12,
+               .maximum = 1e18, .fallback = {1e4}, .live = true, .logarithmic = true, .required = true},
+    [KEY_NU] = {.key = "nu", .unit = "1", .doc = "Poisson's ratio", .minimum = -0.999, .maximum = 0.4999, .fallback = {0.3},
+                .live = true},
+    [KEY_LAME] = {.key = "lame", .unit = "1", .doc = "consistent: (E, nu) is the linear response; paper: plain Lamé lambda",
+                  .kind = PARAMETER_CHOICE, .maximum = 1, .choices = lame_choices, .live = true},
+};
+
+static const effect_measure measures[] = {
+    {"elastic", "mass length^2/time^2", "stored energy of the matrix"},
+};
+
+static const solid_stages stages = {.constants = constants, .stress = stress, .wave = wave, .energy = energy};
+
+const effect SOLID_EFFECT(elastic) = {
+    .name = "elastic", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "isotropic elasticity of the matrix",
+    .reference = "AnisoMPM section 5; METHOD.md section 1", .parameters = parameters, .parameter_count = 3,
+    .measures = measures, .measure_count = 1, .stages = &stages,
+};

@@ -1,0 +1,104 @@
+/* Fibres: one or two families that stiffen the matrix along their directions.
+ *
+ * Ψf = Σ_k k_k/2 (ℓ_k − 1)², ℓ_k = |F a_k|, k_k = γ_k μ  (AnisoMPM §5, METHOD.md §1). τ = Σ k_k (1 − 1/ℓ_k) (F a_k)(F a_k)ᵀ.
+ * Never degraded by the matrix' damage: fibres part, they do not tear. */
+#include "solid/tensor.h"
+
+enum { K1, K2 };
+enum { KEY_GAMMA, KEY_GAMMA2 };
+#define LENGTH_TINY ((real)1e-12)
+
+static void constants(const effect_values *all, const solid_definition *d, bool protects, real out[CONSTANTS]) {
+    (void)d, (void)protects;
+    double mu = all[EFFECT_elastic].value[0][0] / (2 * (1 + all[EFFECT_elastic].value[1][0]));
+    out[K1] = (real)(mu * all[EFFECT_fibres].value[KEY_GAMMA][0]);
+    out[K2] = (real)(mu * all[EFFECT_fibres].value[KEY_GAMMA2][0]);
+}
+
+/* Adds one family's Kirchhoff stress. As ℓ → 0 the direction F a is lost and with it the (finite) force: the limit
+ * (1 − 1/ℓ)(F a)(F a)ᵀ → 0 is what stands. */
+static void add_family(tile_work *w, int field, real stiffness) {
+    if (field < 0 || stiffness == 0) return;
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            int32_t pack = w->tile->first_pack + k;
+            vec3v f = mat3v_times(mat3v_load(&w->state->fields[FIELD_DEFORMATION], pack, part),
+                                  vec3v_load(&w->state->fields[field], pack, part));
+            vec length = vec_max(vec_sqrt(vec3v_dot(f, f)), vec_all(LENGTH_TINY));
+            vec factor = stiffness * (1 - 1 / length);
+            vec3v g = {factor * f.x, factor * f.y, factor * f.z};
+            vec products[6] = {g.x * f.x, g.y * f.y, g.z * f.z, g.x * f.y, g.y * f.z, g.x * f.z};
+            for (int c = 0; c < 6; c++) {
+                real *tau = scratch_at(w->scratch->kirchhoff, 6, k, c, part);
+                vec_store(tau, vec_load(tau) + products[c]);
+            }
+        }
+}
+
+static void stress(tile_work *w) {
+    add_family(w, w->state->fibre_field, w->constants[K1]);
+    add_family(w, w->state->fibre2_field, w->constants[K2]);
+}
+
+/* ρ0 c² grows by k ℓ². */
+static void add_wave(tile_work *w, int field, real stiffness) {
+    if (field < 0 || stiffness == 0) return;
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            int32_t pack = w->tile->first_pack + k;
+            vec3v f = mat3v_times(mat3v_load(&w->state->fields[FIELD_DEFORMATION], pack, part),
+                                  vec3v_load(&w->state->fields[field], pack, part));
+            real *modulus = scratch_at(w->scratch->wave_modulus, 1, k, 0, part);
+            vec_store(modulus, vec_load(modulus) + stiffness * vec3v_dot(f, f));
+        }
+}
+
+static void wave(tile_work *w) {
+    add_wave(w, w->state->fibre_field, w->constants[K1]);
+    add_wave(w, w->state->fibre2_field, w->constants[K2]);
+}
+
+static void add_energy(tile_work *w, int field, double stiffness) {
+    if (field < 0 || stiffness == 0) return;
+    for (int p = 0; p < w->tile->count; p++) {
+        int32_t pack = w->tile->first_pack + p / PACK;
+        int lane = p % PACK;
+        double f[3] = {0, 0, 0};
+        for (int row = 0; row < 3; row++)
+            for (int c = 0; c < 3; c++)
+                f[row] += (double)field_at(&w->state->fields[FIELD_DEFORMATION], pack, row * 3 + c, 0)[lane] *
+                          (double)field_at(&w->state->fields[field], pack, c, 0)[lane];
+        double stretch = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) - 1;
+        w->energy[1] += 0.5 * stiffness * stretch * stretch *
+                        (double)field_at(&w->state->fields[FIELD_VOLUME], pack, 0, 0)[lane];
+    }
+}
+
+static void energy(tile_work *w) {
+    add_energy(w, w->state->fibre_field, (double)w->constants[K1]);
+    add_energy(w, w->state->fibre2_field, (double)w->constants[K2]);
+}
+
+static const parameter parameters[] = {
+    [KEY_GAMMA] = {.key = "gamma", .unit = "1", .doc = "stiffness of the first fibre family over the matrix' shear modulus",
+                   .maximum = 1e6, .fallback = {10}, .live = true, .logarithmic = true},
+    [KEY_GAMMA2] = {.key = "gamma2", .unit = "1", .doc = "the same for the second family", .maximum = 1e6, .live = true,
+                    .logarithmic = true},
+};
+
+static const effect_field fields[] = {
+    {.key = "fibre", .components = 3, .unit = "1", .written = true, .doc = "first fibre direction at rest, unit"},
+    {.key = "fibre2", .components = 3, .unit = "1", .written = true, .doc = "second fibre direction at rest, unit"},
+};
+
+static const effect_measure measures[] = {
+    {"fibre", "mass length^2/time^2", "stored energy of the fibres"},
+};
+
+static const solid_stages stages = {.constants = constants, .stress = stress, .wave = wave, .energy = energy};
+
+const effect SOLID_EFFECT(fibres) = {
+    .name = "fibres", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "stiffness along fibre directions",
+    .reference = "AnisoMPM section 5; METHOD.md section 1", .parameters = parameters, .parameter_count = 2,
+    .fields = fields, .field_count = 2, .measures = measures, .measure_count = 1, .needs = "elastic", .stages = &stages,
+};

@@ -1,0 +1,16 @@
+/* The one list that adding an effect touches. Its order is the order of stages within a step. */
+#ifndef SUNDER_SOLID_EFFECTS_LIST_H
+#define SUNDER_SOLID_EFFECTS_LIST_H
+
+#define SOLID_EFFECT_LIST(X)                                                                                           \
+    X(damage)  /* degrades first, so that forces see g(d) */                                                           \
+    X(elastic)                                                                                                         \
+    X(fibres)                                                                                                          \
+    X(gravity)                                                                                                         \
+    X(boundary) /* last word on the grid's velocities */
+
+#define SOLID_EFFECT_INDEX(name) EFFECT_##name,
+enum { SOLID_EFFECT_LIST(SOLID_EFFECT_INDEX) SOLID_EFFECTS };
+#undef SOLID_EFFECT_INDEX
+
+#endif

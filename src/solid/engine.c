@@ -1,0 +1,216 @@
+/* The solid engine's life: creating, stepping, reporting limits. */
+#include "base/memory.h"
+#include "solid/order.h"
+
+#include <math.h>
+#include <time.h>
+
+#define SOLID_EFFECT_ADDRESS(name) &SOLID_EFFECT(name),
+static const effect *const effects[SOLID_EFFECTS] = {SOLID_EFFECT_LIST(SOLID_EFFECT_ADDRESS)};
+
+enum { PHASE_SORT, PHASE_P2G, PHASE_GRID, PHASE_G2P };
+
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static int add_field(solid *s, const char *name, int components) {
+    for (int i = 0; i < s->field_count; i++)
+        if (strcmp(s->fields[i].name, name) == 0) return i;
+    s->fields[s->field_count] = (solid_field){.name = name, .components = components};
+    return s->field_count++;
+}
+
+static int find_index(const solid *s, const char *name) {
+    for (int i = 0; i < s->field_count; i++)
+        if (strcmp(s->fields[i].name, name) == 0) return i;
+    return -1;
+}
+
+/* Only the fields of effects that are on; a second fibre family only where there is one. */
+static void plan_fields(solid *s) {
+    add_field(s, "position", 3);
+    add_field(s, "velocity", 3);
+    add_field(s, "affine_velocity", 9);
+    add_field(s, "deformation_gradient", 9);
+    add_field(s, "volume", 1);
+    for (int e = 0; e < s->effect_count; e++)
+        for (int i = 0; (s->mask >> e & 1) && i < effects[e]->field_count; i++) {
+            const effect_field *f = &effects[e]->fields[i];
+            if (strcmp(f->key, "fibre") == 0 && !s->definition.fibre1) continue;
+            if (strcmp(f->key, "fibre2") == 0 && !s->definition.fibre2) continue;
+            add_field(s, f->key, f->components);
+        }
+    s->damage_field = find_index(s, "damage");
+    s->history_field = find_index(s, "damage_history");
+    s->fibre_field = find_index(s, "fibre");
+    s->fibre2_field = find_index(s, "fibre2");
+    s->transfers_damage = s->damage_field >= 0;
+}
+
+void solid_constants_refresh(solid *s) {
+    for (int m = 0; m < s->definition.material_count; m++) {
+        const solid_material *material = &s->definition.materials[m];
+        s->material_mask[m] = 0;
+        for (int e = 0; e < s->effect_count; e++) {
+            if (!material->effects[e].on || !(s->mask >> e & 1)) continue;
+            s->material_mask[m] |= 1u << e;
+            if (effects[e]->stages->constants)
+                effects[e]->stages->constants(material->effects, &s->definition, material->protects, s->constants[m][e]);
+        }
+    }
+}
+
+static void destroy(solid *s) {
+    if (!s) return;
+    particles_free(s);
+    grid_free(s);
+    memory_free(s->workers, (size_t)s->threads * sizeof *s->workers);
+    memory_free(s, sizeof *s);
+}
+
+static status prepare(solid *s, report *r) {
+    status code = particles_load(s, r);
+    if (code == STATUS_OK) code = grid_build(s, r);
+    if (code != STATUS_OK) return code;
+    s->sorted = true;
+    return STATUS_OK;
+}
+
+static void collect_limits(solid *s) {
+    memset(s->limits, 0, sizeof s->limits);
+    for (int32_t t = 0; t < s->tile_count; t++)
+        for (int e = 0; e < s->effect_count; e++)
+            s->limits[e] = fmax(s->limits[e], (double)s->tile_results[t].limit[e]);
+}
+
+static solid *create(const solid_definition *definition, report *r) {
+    solid *s = memory_allocate(sizeof *s);
+    if (!s) {
+        report_set(r, STATUS_SYSTEM, "out of memory for the solid engine");
+        return NULL;
+    }
+    s->definition = *definition;
+    s->effects = effects;
+    s->effect_count = SOLID_EFFECTS;
+    s->mask = definition->effect_mask;
+    s->threads = definition->threads > 0 ? definition->threads : 1;
+    s->count = definition->count;
+    plan_fields(s);
+    solid_constants_refresh(s);
+    s->workers = memory_allocate_array((size_t)s->threads, sizeof *s->workers);
+    s->sort_keys = memory_allocate_array((size_t)s->count, sizeof *s->sort_keys);
+    s->sort_keys2 = memory_allocate_array((size_t)s->count, sizeof *s->sort_keys2);
+    s->permute = memory_allocate_array((size_t)s->count, sizeof *s->permute);
+    status code = STATUS_OK;
+    if (!s->workers || !s->sort_keys || !s->sort_keys2 || !s->permute)
+        code = report_set(r, STATUS_SYSTEM, "out of memory for %lld particles", (long long)s->count);
+    if (code == STATUS_OK) code = prepare(s, r);
+    if (code != STATUS_OK) {
+        if (!s->workers) s->threads = 0;
+        destroy(s);
+        return NULL;
+    }
+    transfer_limits(s);
+    collect_limits(s);
+    return s;
+}
+
+static solid_boundary *boundaries(solid *s) {
+    return s->definition.boundaries;
+}
+
+static void limits(const solid *s, double *limit) {
+    for (int e = 0; e < s->effect_count; e++) limit[e] = s->limits[e] > 0 ? 1 / s->limits[e] : HUGE_VAL;
+}
+
+/* Which quantity of a bad particle is to blame, for the message. */
+static status blame(const solid *s, const solid_tile *tile, int lane, double dt, solid_fault *fault, report *r) {
+    int32_t pack = tile->first_pack + lane / PACK;
+    double speed = 0, J_parts = 0;
+    for (int c = 0; c < 3; c++) speed = fmax(speed, fabs((double)field_at(&s->fields[FIELD_VELOCITY], pack, c, 0)[lane % PACK]));
+    for (int c = 0; c < 9; c++) J_parts += (double)field_at(&s->fields[FIELD_DEFORMATION], pack, c, 0)[lane % PACK];
+    fault->particle = s->id[pack * PACK + lane % PACK];
+    fault->effect = "elastic";
+    bool runaway = isfinite(speed) && isfinite(J_parts);
+    fault->quantity = runaway ? "speed" : isfinite(speed) ? "deformation gradient" : "velocity";
+    fault->value = runaway ? speed : NAN;
+    if (s->damage_field >= 0 && !isfinite((double)field_at(&s->fields[s->damage_field], pack, 0, 0)[lane % PACK]))
+        fault->effect = "damage", fault->quantity = "damage";
+    if (runaway)
+        return report_set(r, STATUS_DIVERGED, "particle %lld runs away (effect %s): speed %.4g moves it over a cell (%.4g) in one step of %.4g",
+                          (long long)fault->particle, fault->effect, speed, s->definition.dx, dt);
+    return report_set(r, STATUS_DIVERGED, "particle %lld has a %s that is not finite (effect %s)", (long long)fault->particle,
+                      fault->quantity, fault->effect);
+}
+
+static status examine(solid *s, double dt, solid_fault *fault, report *r) {
+    for (int32_t t = 0; t < s->tile_count; t++) {
+        if (s->tile_results[t].fault) return blame(s, &s->tiles[t], s->tile_results[t].fault - 1, dt, fault, r);
+        if (s->tile_results[t].unsorted) s->sorted = false;
+    }
+    collect_limits(s);
+    return STATUS_OK;
+}
+
+static status sort(solid *s, report *r) {
+    double start = now();
+    status code = particles_sort(s, r);
+    s->seconds[PHASE_SORT] += now() - start;
+    return code;
+}
+
+static status step(solid *s, double dt, solid_fault *fault, report *r) {
+    if (!s->sorted) {
+        status code = sort(s, r);
+        if (code != STATUS_OK) return code;
+    }
+    double t0 = now();
+    transfer_to_grid(s, (real)dt);
+    double t1 = now();
+    grid_update(s, (real)dt);
+    double t2 = now();
+    transfer_to_particles(s, (real)dt);
+    double t3 = now();
+    s->seconds[PHASE_P2G] += t1 - t0;
+    s->seconds[PHASE_GRID] += t2 - t1;
+    s->seconds[PHASE_G2P] += t3 - t2;
+    return examine(s, dt, fault, r);
+}
+
+static void refresh(solid *s) {
+    solid_constants_refresh(s);
+    transfer_limits(s);
+    collect_limits(s);
+}
+
+static int components(const solid *s, const char *field) {
+    return particles_read(s, field, NULL);
+}
+
+static double bytes_per_particle(const solid *s) {
+    double bytes = (double)s->pack_capacity * PACK * sizeof *s->id;
+    for (int i = 0; i < s->field_count; i++) bytes += (double)s->pack_capacity * s->fields[i].components * PACK * sizeof(real);
+    double sort_bytes = (double)s->count * (2 * sizeof *s->sort_keys + sizeof *s->permute);
+    double node_reals = NODE + (s->damage_grid ? DAMAGE_NODE : 0);
+    double grid_bytes = (double)s->slot_capacity * BLOCK_NODES * node_reals * sizeof(real);
+    double tables = (double)s->tile_capacity * (sizeof *s->tiles + sizeof *s->tile_results) +
+                    (double)s->block_capacity * sizeof *s->blocks + (double)s->hash_capacity * 12;
+    return (bytes + sort_bytes + grid_bytes + tables) / (double)s->count;
+}
+
+static void phases(const solid *s, double seconds[SOLID_PHASES]) {
+    memcpy(seconds, s->seconds, sizeof s->seconds);
+}
+
+#define TEXT_(x) #x
+#define TEXT(x) TEXT_(x)
+
+const solid_engine solid_engine_table = {
+    .simd = TEXT(SOLID_SIMD_NAME), .precision = SUNDER_PRECISION, .effects = effects, .effect_count = SOLID_EFFECTS,
+    .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .sort = sort, .step = step,
+    .measure = solid_measure, .read = particles_read, .components = components, .save = solid_save, .restore = solid_restore,
+    .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = phases,
+};

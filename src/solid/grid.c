@@ -1,0 +1,168 @@
+/* The sparse grid: which blocks of nodes are reached, their colours, and the update of their velocities. */
+#include "base/memory.h"
+#include "base/threads.h"
+#include "solid/order.h"
+
+#include <math.h>
+
+/* The kernels' first nodes as they are, and one cell of drift to either side: what a block promises until the next sort. */
+static void allow_drift(const solid *s, solid_block *b) {
+    const solid_field *position = &s->fields[FIELD_POSITION];
+    double shift = kernel_shift(s->definition.kernel);
+    for (int c = 0; c < 3; c++) {
+        real least = 1000, most = -1000;
+        for (int32_t t = b->first_tile; t < b->first_tile + b->tile_count; t++)
+            for (int32_t p = 0; p < s->tiles[t].count; p++) {
+                real x = field_at(position, s->tiles[t].first_pack + p / PACK, c, 0)[p % PACK];
+                least = x < least ? x : least;
+                most = x > most ? x : most;
+            }
+        b->base_low[c] = (int32_t)floor((double)least - shift) - 1;
+        b->base_high[c] = (int32_t)floor((double)most - shift) + 1;
+    }
+}
+
+/* Whether some kernel of this state is four nodes wide. */
+static bool has_cubic(const solid *s) {
+    return s->definition.kernel == KERNEL_CUBIC || (s->transfers_damage && s->definition.laplacian == KERNEL_CUBIC);
+}
+
+/* First and last node that a block's kernels can touch. A cubic Laplacian beside a quadratic momentum kernel starts up to one node
+ * earlier. */
+static void reach(const solid *s, const solid_block *b, int32_t low[3], int32_t high[3]) {
+    bool mixed = s->definition.kernel == KERNEL_QUADRATIC && has_cubic(s);
+    for (int c = 0; c < 3; c++) {
+        low[c] = b->base_low[c] - (mixed ? 1 : 0);
+        high[c] = b->base_high[c] + (has_cubic(s) ? 3 : 2);
+    }
+}
+
+/* Offsets −1, 0, +1 of a neighbour number. */
+static void neighbour_offset(int n, int32_t o[3]) {
+    o[0] = n / 9 - 1;
+    o[1] = n / 3 % 3 - 1;
+    o[2] = n % 3 - 1;
+}
+
+static bool reaches(const int32_t o[3], const int32_t low[3], const int32_t high[3]) {
+    for (int c = 0; c < 3; c++) {
+        if (o[c] < 0 && low[c] >= 0) return false;
+        if (o[c] > 0 && high[c] < BLOCK) return false;
+    }
+    return true;
+}
+
+static uint64_t neighbour_key(const solid_block *b, const int32_t o[3]) {
+    int32_t c[3] = {b->coordinate[0] + o[0], b->coordinate[1] + o[1], b->coordinate[2] + o[2]};
+    return block_key(c);
+}
+
+static status reserve_slots(solid *s, int32_t slots, report *r) {
+    if (slots <= s->slot_capacity) return STATUS_OK;
+    int32_t capacity = slots + slots / 4 + 64;
+    size_t fresh = (size_t)capacity;
+    size_t node_bytes = BLOCK_NODES * NODE * sizeof(real), damage_bytes = BLOCK_NODES * DAMAGE_NODE * sizeof(real);
+    grid_free(s);
+    s->slot_coordinate = memory_allocate_array(fresh, sizeof *s->slot_coordinate);
+    s->grid = memory_allocate_array(fresh, node_bytes);
+    s->slot_results = memory_allocate_array(fresh, sizeof *s->slot_results);
+    if (s->transfers_damage) s->damage_grid = memory_allocate_array(fresh, damage_bytes);
+    s->slot_capacity = capacity;
+    if (!s->slot_coordinate || !s->grid || !s->slot_results || (s->transfers_damage && !s->damage_grid))
+        return report_set(r, STATUS_SYSTEM, "out of memory for %d grid blocks", capacity);
+    return STATUS_OK;
+}
+
+void grid_free(solid *s) {
+    size_t slots = (size_t)s->slot_capacity;
+    memory_free(s->slot_coordinate, s->slot_coordinate ? slots * sizeof *s->slot_coordinate : 0);
+    memory_free(s->grid, s->grid ? slots * BLOCK_NODES * NODE * sizeof(real) : 0);
+    memory_free(s->slot_results, s->slot_results ? slots * sizeof *s->slot_results : 0);
+    memory_free(s->damage_grid, s->damage_grid ? slots * BLOCK_NODES * DAMAGE_NODE * sizeof(real) : 0);
+    s->slot_coordinate = NULL, s->grid = NULL, s->slot_results = NULL, s->damage_grid = NULL;
+    s->slot_capacity = 0;
+}
+
+/* Blocks of one colour never write to the same node: 8 colours, period two blocks, when kernels stay within −1 … 6 of their
+ * block; 27 when they reach −2 … 7. */
+static void colour_blocks(solid *s) {
+    int period = has_cubic(s) ? 3 : 2, count = period * period * period;
+    int32_t fill[28] = {0};
+    s->colour_count = count;
+    memset(s->colour_start, 0, sizeof s->colour_start);
+    for (int pass = 0; pass < 2; pass++) {
+        for (int32_t b = 0; b < s->block_count; b++) {
+            const int32_t *c = s->blocks[b].coordinate;
+            int colour = 0;
+            for (int axis = 0; axis < 3; axis++) colour = colour * period + ((c[axis] % period) + period) % period;
+            if (pass == 0) s->colour_start[colour + 1]++;
+            else s->colour_blocks[fill[colour]++] = b;
+        }
+        if (pass == 1) break;
+        for (int i = 0; i < count; i++) s->colour_start[i + 1] += s->colour_start[i];
+        memcpy(fill, s->colour_start, sizeof fill);
+    }
+}
+
+status grid_build(solid *s, report *r) {
+    status code = order_reserve_hash(s, 27 * (int64_t)s->block_count, r);
+    if (code != STATUS_OK) return code;
+    order_clear_hash(s);
+    for (int32_t b = 0; b < s->block_count; b++) {
+        int32_t low[3], high[3], o[3];
+        allow_drift(s, &s->blocks[b]);
+        reach(s, &s->blocks[b], low, high);
+        for (int n = 0; n < NEIGHBOURS; n++) {
+            neighbour_offset(n, o);
+            s->blocks[b].neighbour[n] = reaches(o, low, high) ? 0 : -1;
+            if (s->blocks[b].neighbour[n] == 0) (void)order_insert(s, neighbour_key(&s->blocks[b], o));
+        }
+    }
+    if ((code = order_rank_all(s, &s->slot_count, r)) != STATUS_OK) return code;
+    if ((code = reserve_slots(s, s->slot_count, r)) != STATUS_OK) return code;
+    for (int32_t i = 0; i < s->slot_count; i++) block_coordinate(s->block_list[i], s->slot_coordinate[i]);
+    for (int32_t b = 0; b < s->block_count; b++)
+        for (int n = 0; n < NEIGHBOURS; n++) {
+            int32_t o[3];
+            neighbour_offset(n, o);
+            if (s->blocks[b].neighbour[n] == 0) s->blocks[b].neighbour[n] = order_rank(s, neighbour_key(&s->blocks[b], o));
+        }
+    colour_blocks(s);
+    return STATUS_OK;
+}
+
+/* ---- the update -------------------------------------------------------------------------------------------------- */
+
+typedef struct update_context {
+    solid *state;
+    real dt;
+} update_context;
+
+/* Momentum becomes velocity, Σ w d becomes d; then the effects' grid stages in their order. */
+static void update_slot(void *context, int64_t slot, int worker) {
+    (void)worker;
+    update_context *u = context;
+    solid *s = u->state;
+    real *nodes = s->grid + slot * BLOCK_NODES * NODE;
+    for (int n = 0; n < BLOCK_NODES; n++) {
+        real mass = nodes[n * NODE + 3], inverse = mass > 0 ? 1 / mass : 0;
+        for (int c = 0; c < 3; c++) nodes[n * NODE + c] *= inverse;
+    }
+    if (s->transfers_damage) {
+        real *d = s->damage_grid + slot * BLOCK_NODES * DAMAGE_NODE, *weight = d + BLOCK_NODES;
+        for (int n = 0; n < BLOCK_NODES; n++) d[n] = weight[n] > 0 ? d[n] / weight[n] : 0;
+    }
+    grid_work w = {.state = s, .slot = (int32_t)slot, .nodes = nodes, .dt = u->dt, .result = &s->slot_results[slot]};
+    memset(w.result, 0, sizeof *w.result);
+    for (int e = 0; e < s->effect_count; e++)
+        if ((s->mask >> e & 1) && s->effects[e]->stages->grid) s->effects[e]->stages->grid(&w);
+}
+
+void grid_update(solid *s, real dt) {
+    update_context u = {s, dt};
+    parallel_for(s->threads, s->slot_count, 16, update_slot, &u);
+    for (int32_t i = 0; i < s->slot_count; i++) {
+        s->grip_work += s->slot_results[i].grip_work;
+        for (int c = 0; c < 3; c++) s->grip_impulse[c] += s->slot_results[i].grip_impulse[c];
+    }
+}

@@ -1,0 +1,121 @@
+/* The solid engine, AnisoMPM, as the floors above see it: one table of functions a precision and instruction set.
+ *
+ * The engine knows particles, a sparse block grid, materials and rigid boundaries. It knows no Lua, no file, no terminal and no
+ * database. All quantities are in scene units; arrays handed in and out are f64 and in order of particle id. */
+#ifndef SUNDER_SOLID_SOLID_H
+#define SUNDER_SOLID_SOLID_H
+
+#include "base/record.h"
+#include "effect/effect.h"
+#include "effect/kinds.h"
+#include "geom/shape.h"
+
+#include <stdint.h>
+
+enum { SOLID_MATERIALS = 32, SOLID_BOUNDARIES = 64, SOLID_BINS = 50, SOLID_PHASES = 4 };
+
+typedef struct solid_material {
+    double density;
+    const effect_values *effects; /* by index in the engine's effect list; borrowed for the engine's life */
+    bool protects;                /* particles of this material are never damaged (they were gripped at the start) */
+} solid_material;
+
+/* A rigid shape at its place: maps between its rest frame (time 0) and the world. */
+typedef struct rigid_motion {
+    double translation[3];
+    double rotation[9]; /* about `pivot` */
+    double pivot[3];    /* at time 0 */
+    double velocity[3], spin[3];
+    bool active;
+} rigid_motion;
+
+/* A rigid shape that takes hold of the grid (a grip) or keeps material out (a collider). */
+typedef struct solid_boundary {
+    const shape *shape; /* in its rest frame */
+    bool grip;
+    contact_kind contact;
+    double friction;
+    rigid_motion motion; /* updated by the caller before each step */
+} solid_boundary;
+
+typedef struct solid_definition {
+    int threads;
+    double dx;
+    transfer_kind transfer;
+    double transfer_ratio;
+    kernel_kind kernel, laplacian;
+    double gravity[3];
+    uint32_t effect_mask; /* effects that any body uses, by index in the effect list */
+    int material_count, boundary_count;
+    solid_material materials[SOLID_MATERIALS];
+    solid_boundary boundaries[SOLID_BOUNDARIES];
+    int64_t count;
+    const double *position, *velocity; /* [count][3] */
+    const double *volume;              /* [count], rest volume */
+    const double *fibre1, *fibre2;     /* [count][3], unit and orthogonal; NULL when no effect needs them */
+    const uint8_t *material;           /* [count] */
+} solid_definition;
+
+typedef struct solid_measures {
+    double mass, momentum[3], angular_momentum[3]; /* angular momentum with the particles' affine part */
+    double kinetic, elastic, fibre, gravitational;
+    double grip_work, grip_impulse[3]; /* put in by boundaries since the start */
+    double damage_mean, damage_max, broken_fraction; /* broken: d > 0.9, of all particles */
+    double histogram[SOLID_BINS];                    /* fraction of particles by damage */
+    double determinant_min, determinant_max, speed_max;
+} solid_measures;
+
+typedef struct solid solid;
+
+/* What stopped a step: filled by `check`. */
+typedef struct solid_fault {
+    int64_t particle;
+    const char *effect, *quantity;
+    double value;
+} solid_fault;
+
+typedef struct solid_engine {
+    const char *simd;
+    int precision;
+    const effect *const *effects;
+    int effect_count;
+    /* Creates the engine's state; NULL with a report when memory is out or an effect rejects its values. */
+    solid *(*create)(const solid_definition *definition, report *r);
+    void (*destroy)(solid *s);
+    /* The boundaries' motions may be written between steps. */
+    solid_boundary *(*boundaries)(solid *s);
+    /* Largest Δt of each effect from the current state into limit[effect_count] (HUGE_VAL: none); momentum's, without the cfl
+     * factor, is that of effect "elastic". */
+    void (*limits)(const solid *s, double *limit);
+    /* Puts particles in canonical order. Called by the simulation at the start of every frame (so a resumed run finds the same
+     * order), and by `step` itself when a particle leaves its block's margin. Errors: out of memory. */
+    status (*sort)(solid *s, report *r);
+    /* One step of symplectic Euler. STATUS_DIVERGED when the new state is not finite or runs away; `fault` says where. */
+    status (*step)(solid *s, double dt, solid_fault *fault, report *r);
+    status (*measure)(const solid *s, solid_measures *m, report *r); /* errors: out of memory */
+    /* Copies a field in order of id into out[count][components]: "position", "velocity", "deformation_gradient", "affine_velocity", "volume", or a
+     * field of an effect that is on. Returns components, 0 when there is no such field. */
+    int (*read)(const solid *s, const char *field, double *out);
+    /* Components of such a field, 0 when there is none. */
+    int (*components)(const solid *s, const char *field);
+    /* The whole state, bit for bit. `restore` needs a solid created from the same definition. */
+    status (*save)(const solid *s, record_list *list, report *r);
+    status (*restore)(solid *s, const record_list *list, report *r);
+    /* A knob was turned: values in the definition's materials changed. */
+    void (*refresh)(solid *s);
+    /* Bytes a particle, and seconds spent by phase since the start: sort, p2g, grid, g2p. */
+    double (*bytes_per_particle)(const solid *s);
+    void (*phases)(const solid *s, double seconds[SOLID_PHASES]);
+} solid_engine;
+
+/* The engine for a precision (32, 64) and instruction set ("auto": the best that this processor has; "plain", "avx2",
+ * "avx512"). NULL when this processor or build lacks it. */
+const solid_engine *solid_engine_find(int precision, const char *simd);
+
+/* World position → the boundary's rest frame, and the velocity of the boundary's material at a world position. */
+void rigid_motion_to_rest(const rigid_motion *m, const double x[3], double rest[3]);
+void rigid_motion_velocity(const rigid_motion *m, const double x[3], double velocity[3]);
+/* Moves it on by dt with its current velocity and spin. */
+void rigid_motion_advance(rigid_motion *m, double dt);
+
+#endif

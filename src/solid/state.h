@@ -1,0 +1,199 @@
+/* The solid engine's state, laid out for the loops that read it.
+ *
+ * Particles lie in packs of PACK. A field with c components is an array [packs][c][PACK]: one pack's values of a component
+ * fill a cache line in f32. A *tile* is a run of packs of one grid block and one material, at most TILE_PACKS long, that stages work on
+ * while it is in cache; the last pack of a tile is padded with particles of no volume (id −1), so that no loop has a
+ * remainder. Positions are kept in units of dx from their block's first node, so precision does not depend on where a
+ * body is. Blocks are 4×4×4 nodes; a block owns the particles whose kernel starts at one of its nodes.
+ *
+ * Lazy order: a particle may drift one cell out of its block before the next sort. Its kernel then reaches the block's *window*, which every pass
+ * reads or fills densely and exchanges with the grid once a block. */
+#ifndef SUNDER_SOLID_STATE_H
+#define SUNDER_SOLID_STATE_H
+
+#include "solid/effects/list.h"
+#include "solid/solid.h"
+#include "solid/variant.h"
+
+enum {
+    PACK = 16,
+    PACK_PARTS = PACK / VEC_LANES,
+    TILE_PACKS = 8,
+    TILE_PARTICLES = TILE_PACKS * PACK,
+    BLOCK = 4,
+    BLOCK_NODES = BLOCK * BLOCK * BLOCK,
+    NODE = 4,            /* reals a node: momentum (velocity after the grid update) and mass */
+    DAMAGE_NODE = 2,     /* reals a node: Σ w d, Σ w; after the grid update their ratio in [0] */
+    WINDOW_LOW = -2,     /* a window's first node, from the block's first node */
+    WINDOW = 10,         /* nodes a side: reaches −2 … 7, enough for a cubic kernel centred by the quadratic's cells */
+    WINDOW_NODES = WINDOW * WINDOW * WINDOW,
+    NEIGHBOURS = 27,
+    CONSTANTS = 16,      /* reals an effect may derive from a material's values */
+    EFFECT_FIELDS = 8,
+};
+
+/* The particle fields that the engine itself keeps; effects' fields follow. */
+enum { FIELD_POSITION, FIELD_VELOCITY, FIELD_AFFINE, FIELD_DEFORMATION, FIELD_VOLUME, FIELD_BUILT_IN };
+enum { FIELD_LIMIT = FIELD_BUILT_IN + EFFECT_FIELDS };
+
+typedef struct solid_field {
+    const char *name;
+    int components;
+    real *data; // [pack_capacity][components][PACK]
+} solid_field;
+
+typedef struct solid_tile {
+    int32_t block, material;
+    int32_t first_pack, pack_count, count; /* count: real particles; the rest of the last pack is padding */
+} solid_tile;
+
+/* A block that owns particles. */
+typedef struct solid_block {
+    int32_t coordinate[3]; /* in blocks */
+    int32_t first_tile, tile_count;
+    int32_t base_low[3], base_high[3]; /* first kernel nodes that a particle may have before the next sort */
+    int32_t neighbour[NEIGHBOURS]; /* grid slots of the blocks around (x slowest); −1 where no kernel can reach */
+} solid_block;
+
+/* What a tile's stages leave for the pass that follows them: all [TILE_PACKS][…][PACK]. */
+typedef struct tile_scratch {
+    real kirchhoff[TILE_PACKS * 6 * PACK];    // xx yy zz xy yz xz of τ = P Fᵀ
+    real degradation[TILE_PACKS * PACK];      // g(d); 1 where nothing degrades
+    real laplacian[TILE_PACKS * PACK];        // Δd, per length²
+    real wave_modulus[TILE_PACKS * PACK];     // ρ0 c², summed over effects
+    real records[TILE_PARTICLES * 32];        // per particle, for scatter and gather
+} tile_scratch;
+
+typedef struct solid_worker {
+    tile_scratch tile;
+    real window[WINDOW_NODES * NODE];
+    real damage_window[WINDOW_NODES * DAMAGE_NODE];
+} solid_worker;
+
+/* Per-block results of a pass, reduced in block order so that bits do not depend on threads. */
+typedef struct block_result {
+    double grip_work, grip_impulse[3];
+} block_result;
+
+typedef struct tile_result {
+    real limit[EFFECT_LIMIT]; /* 1/Δt allowed, largest over the tile, by effect */
+    int32_t fault;            /* lane index of the first bad particle + 1, 0: none */
+    int32_t unsorted;         /* a particle has left the margin */
+} tile_result;
+
+struct solid {
+    solid_definition definition;
+    const effect *const *effects;
+    int effect_count, threads;
+    uint32_t mask; /* effects on, by index */
+    real constants[SOLID_MATERIALS][EFFECT_LIMIT][CONSTANTS];
+    uint32_t material_mask[SOLID_MATERIALS];
+    bool transfers_damage; /* some material has the damage effect */
+
+    int64_t count;
+    int32_t pack_count, pack_capacity;
+    int32_t *id; // [pack_capacity][PACK], −1 for padding
+    int field_count;
+    solid_field fields[FIELD_LIMIT];
+    int damage_field, history_field, fibre_field, fibre2_field; /* indices, −1 when absent */
+
+    int32_t tile_count, tile_capacity, block_count, block_capacity;
+    solid_tile *tiles;
+    solid_block *blocks;
+    int32_t colour_start[28]; /* blocks of colour c are colour_blocks[colour_start[c] … colour_start[c+1]) */
+    int colour_count;
+    int32_t *colour_blocks; // [block_capacity]
+
+    int32_t slot_count, slot_capacity;
+    int32_t (*slot_coordinate)[3]; // [slot_capacity], in blocks, sorted
+    real *grid;                    // [slot_capacity][BLOCK_NODES][NODE]
+    real *damage_grid;             // [slot_capacity][BLOCK_NODES][DAMAGE_NODE], NULL unless damage is on
+
+    /* sorting: kept between sorts, grown when needed */
+    uint64_t *sort_keys, *sort_keys2; // [count]
+    uint64_t *block_keys;             // [hash capacity]
+    int32_t *block_ranks;             // [hash capacity]
+    int64_t hash_capacity, hash_used;
+    uint64_t *block_list; // [block_list_capacity], sorted keys of the blocks in use
+    int32_t block_list_capacity;
+    real *permute;                    // [count]
+
+    solid_worker *workers; // [threads]
+    tile_result *tile_results;   // [tile_capacity]
+    block_result *slot_results;  // [slot_capacity]
+    double limits[EFFECT_LIMIT]; /* 1/Δt, from the current state */
+    bool sorted;
+    double grip_work, grip_impulse[3];
+    double seconds[SOLID_PHASES];
+};
+
+/* One tile in the hands of a stage. */
+typedef struct tile_work {
+    const solid *state;
+    const solid_tile *tile;
+    tile_scratch *scratch;
+    const real *constants; // [CONSTANTS], the calling effect's, of this tile's material
+    tile_result *result;
+    int effect;            /* the calling effect's index */
+    real dt;
+    double energy[2];      /* energy stages add here: matrix or own, fibre */
+} tile_work;
+
+/* One grid block in the hands of a stage. */
+typedef struct grid_work {
+    const solid *state;
+    int32_t slot;
+    real *nodes; // [BLOCK_NODES][NODE], velocity and mass
+    real dt;
+    block_result *result;
+} grid_work;
+
+typedef struct solid_stages {
+    /* Derives what the kernels need from the values of a material, once and when a knob is turned. */
+    void (*constants)(const effect_values *all, const solid_definition *d, bool protects, real constants[CONSTANTS]);
+    void (*degrade)(tile_work *w);    /* before forces: fills scratch->degradation */
+    void (*stress)(tile_work *w);     /* forces: adds to scratch->kirchhoff */
+    void (*update)(tile_work *w);     /* after F: histories; sees scratch->laplacian */
+    void (*wave)(tile_work *w);       /* after update: adds to scratch->wave_modulus */
+    void (*grid)(const grid_work *w); /* on velocities */
+    void (*energy)(tile_work *w);     /* measures */
+} solid_stages;
+
+/* Where stages load and store: component c of sub-vector `part` of the tile's pack k. */
+SIMD_INLINE real *field_at(const solid_field *f, int32_t pack, int component, int part) {
+    return f->data + ((int64_t)pack * f->components + component) * PACK + part * VEC_LANES;
+}
+
+SIMD_INLINE real *scratch_at(real *base, int components, int k, int component, int part) {
+    return base + (k * components + component) * PACK + part * VEC_LANES;
+}
+
+/* particles.c */
+status particles_reserve(solid *s, int32_t packs, report *r);
+status particles_load(solid *s, report *r);
+void particles_free(solid *s);
+int particles_read(const solid *s, const char *field, double *out);
+/* sort.c */
+status particles_sort(solid *s, report *r);
+/* grid.c */
+status grid_build(solid *s, report *r);
+void grid_free(solid *s);
+void grid_update(solid *s, real dt);
+/* transfer.c */
+void transfer_to_grid(solid *s, real dt);
+void transfer_to_particles(solid *s, real dt);
+void transfer_limits(solid *s); /* the momentum limit of a state that no step has reached: at the start, after a knob */
+/* measure.c */
+status solid_measure(const solid *s, solid_measures *m, report *r);
+/* snapshot.c */
+status solid_save(const solid *s, record_list *list, report *r);
+status solid_restore(solid *s, const record_list *list, report *r);
+/* engine.c */
+void solid_constants_refresh(solid *s);
+
+/* An effect's table in this variant: each effect file defines one. */
+#define SOLID_EFFECT(name) SOLID_VARIANT(effect_##name)
+#define SOLID_EFFECT_EXTERN(name) extern const effect SOLID_EFFECT(name);
+SOLID_EFFECT_LIST(SOLID_EFFECT_EXTERN)
+
+#endif

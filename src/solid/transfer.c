@@ -1,0 +1,544 @@
+/* The transfers: particles to grid and back (AnisoMPM §4; METHOD.md §3), one block at a time.
+ *
+ * One gradient operator is used everywhere, the moving-least-squares one G_ip = D⁻¹ w_ip (x_i − x_p): force and affine velocity
+ * then share one matrix. With Q = m C − Δt V0 D⁻¹ τ a particle gives node i
+ *     w_ip (m v + Q (x_i − x_p), m),
+ * and takes back v = Σ w v_i, L = D⁻¹ Σ w v_i (x_i − x_p)ᵀ. Distances are in units of dx; the four momenta-and-mass of four nodes along z
+ * are one row. The damage channel, Σ w d and Σ w, rides along with its own kernel. */
+#include "base/threads.h"
+#include "solid/order.h"
+#include "solid/tensor.h"
+
+#include <stddef.h>
+
+enum { STRIDE_X = WINDOW * WINDOW, STRIDE_Y = WINDOW };
+
+/* Slots of a particle's record for scattering momentum and for gathering velocity. */
+enum {
+    RECORD = 32,
+    P2G_BASE = 0, P2G_X = 4, P2G_Y = 8, P2G_Z = 12, P2G_WZ = 16, P2G_WX = 20, P2G_WY = 24, P2G_NODE = 28, P2G_DAMAGE = 29,
+    G2P_WX = 0, G2P_WY = 4, G2P_WZ = 8, G2P_OFFSET = 12, G2P_NODE = 15, G2P_OUT = 16,
+};
+
+/* B-spline weights of the nodes 0…n−1 for a particle at distance u (in dx) from the first of them. */
+SIMD_INLINE void quadratic_weights(vec u, vec w[4]) {
+    vec a = (real)1.5 - u, b = u - 1, c = u - (real)0.5;
+    w[0] = (real)0.5 * a * a;
+    w[1] = (real)0.75 - b * b;
+    w[2] = (real)0.5 * c * c;
+    w[3] = vec_all(0);
+}
+
+SIMD_INLINE void cubic_weights(vec u, vec w[4]) {
+    vec t = u - 1, s = 1 - t;
+    const real sixth = (real)(1.0 / 6.0);
+    w[0] = sixth * s * s * s;
+    w[1] = (real)(2.0 / 3.0) - t * t * (1 - (real)0.5 * t);
+    w[2] = (real)(2.0 / 3.0) - s * s * (1 - (real)0.5 * s);
+    w[3] = sixth * t * t * t;
+}
+
+/* Second derivatives of the same. */
+SIMD_INLINE void quadratic_curvatures(vec w[4]) {
+    w[0] = vec_all(1);
+    w[1] = vec_all(-2);
+    w[2] = vec_all(1);
+    w[3] = vec_all(0);
+}
+
+SIMD_INLINE void cubic_curvatures(vec u, vec w[4]) {
+    vec t = u - 1, s = 1 - t;
+    w[0] = s;
+    w[1] = 3 * t - 2;
+    w[2] = 3 * s - 2;
+    w[3] = t;
+}
+
+SIMD_INLINE void kernel_weights(kernel_kind kernel, vec u, vec w[4]) {
+    if (kernel == KERNEL_QUADRATIC) quadratic_weights(u, w);
+    else cubic_weights(u, w);
+}
+
+/* The first node of each axis (in block coordinates) and the distances from it. */
+typedef struct kernel_place {
+    vec3v base, u;
+} kernel_place;
+
+SIMD_INLINE kernel_place kernel_locate(kernel_kind kernel, vec3v x) {
+    real shift = kernel == KERNEL_QUADRATIC ? (real)0.5 : 1;
+    vec3v base = {vec_floor(x.x - shift), vec_floor(x.y - shift), vec_floor(x.z - shift)};
+    return (kernel_place){base, {x.x - base.x, x.y - base.y, x.z - base.z}};
+}
+
+/* Index of the first node within the window, as a real (exact: below 1000). */
+SIMD_INLINE vec window_index(vec3v base) {
+    return (base.x - (real)WINDOW_LOW) * (real)STRIDE_X + (base.y - (real)WINDOW_LOW) * (real)STRIDE_Y + (base.z - (real)WINDOW_LOW);
+}
+
+/* Writes lanes of `value` into column `slot` of the records of a part. */
+SIMD_INLINE void record_put(real *records, int first, int slot, vec value) {
+    for (int lane = 0; lane < VEC_LANES; lane++) records[(first + lane) * RECORD + slot] = value[lane];
+}
+
+SIMD_INLINE vec record_get(const real *records, int first, int slot) {
+    vec value;
+    for (int lane = 0; lane < VEC_LANES; lane++) value[lane] = records[(first + lane) * RECORD + slot];
+    return value;
+}
+
+/* ---- particles to grid ------------------------------------------------------------------------------------------- */
+
+typedef struct transfer_context {
+    solid *state;
+    const int32_t *blocks; /* of one colour, for the way to the grid */
+    real dt;
+} transfer_context;
+
+/* Momentum records: base value at the kernel's first node and its slope along each axis. */
+SIMD_INLINE void momentum_records(const tile_work *w, kernel_kind kernel, real density) {
+    const solid *s = w->state;
+    const solid_definition *d = &s->definition;
+    real dx = (real)d->dx, inverse_d = (real)((kernel == KERNEL_QUADRATIC ? 4.0 : 3.0) / (d->dx * d->dx));
+    real force_scale = -w->dt * inverse_d * dx;
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            int32_t pack = w->tile->first_pack + k;
+            int first = k * PACK + part * VEC_LANES;
+            vec volume = vec_load(field_at(&s->fields[FIELD_VOLUME], pack, 0, part));
+            vec mass = volume * density, force = volume * force_scale, carry = mass * dx;
+            mat3v C = mat3v_load(&s->fields[FIELD_AFFINE], pack, part);
+            real *tau = w->scratch->kirchhoff;
+            vec t[6];
+            for (int c = 0; c < 6; c++) t[c] = force * vec_load(scratch_at(tau, 6, k, c, part));
+            mat3v Q = {vec_fma(carry, C.xx, t[0]), vec_fma(carry, C.xy, t[3]), vec_fma(carry, C.xz, t[5]),
+                       vec_fma(carry, C.yx, t[3]), vec_fma(carry, C.yy, t[1]), vec_fma(carry, C.yz, t[4]),
+                       vec_fma(carry, C.zx, t[5]), vec_fma(carry, C.zy, t[4]), vec_fma(carry, C.zz, t[2])};
+            vec3v v = vec3v_load(&s->fields[FIELD_VELOCITY], pack, part);
+            kernel_place at = kernel_locate(kernel, vec3v_load(&s->fields[FIELD_POSITION], pack, part));
+            vec3v slope = mat3v_times(Q, at.u);
+            real *records = w->scratch->records;
+            record_put(records, first, P2G_BASE + 0, vec_fma(mass, v.x, -slope.x));
+            record_put(records, first, P2G_BASE + 1, vec_fma(mass, v.y, -slope.y));
+            record_put(records, first, P2G_BASE + 2, vec_fma(mass, v.z, -slope.z));
+            record_put(records, first, P2G_BASE + 3, mass);
+            const vec columns[3][3] = {{Q.xx, Q.yx, Q.zx}, {Q.xy, Q.yy, Q.zy}, {Q.xz, Q.yz, Q.zz}};
+            for (int axis = 0; axis < 3; axis++) {
+                for (int c = 0; c < 3; c++) record_put(records, first, P2G_X + 4 * axis + c, columns[axis][c]);
+                record_put(records, first, P2G_X + 4 * axis + 3, vec_all(0));
+            }
+            vec wx[4], wy[4], wz[4];
+            kernel_weights(kernel, at.u.x, wx);
+            kernel_weights(kernel, at.u.y, wy);
+            kernel_weights(kernel, at.u.z, wz);
+            for (int n = 0; n < 4; n++) {
+                record_put(records, first, P2G_WX + n, wx[n]);
+                record_put(records, first, P2G_WY + n, wy[n]);
+                record_put(records, first, P2G_WZ + n, wz[n]);
+            }
+            record_put(records, first, P2G_NODE, window_index(at.base));
+        }
+}
+
+/* Adds the contributions of particles that share a first node to the window: accumulated in registers, stored once. */
+SIMD_INLINE int scatter_run(const real *records, int p, int count, int nodes, const node_row node_offset, real *window) {
+    real node = records[p * RECORD + P2G_NODE];
+    node_row sum[16];
+    real *first = window + (int)node * NODE;
+    for (int i = 0; i < nodes; i++)
+        for (int j = 0; j < nodes; j++) sum[i * nodes + j] = row_load(first + (i * STRIDE_X + j * STRIDE_Y) * NODE);
+    for (; p < count && records[p * RECORD + P2G_NODE] == node; p++) {
+        const real *r = records + p * RECORD;
+        node_row along_y = row_repeat(r + P2G_Y), along_x = row_repeat(r + P2G_X), weight = row_spread(r + P2G_WZ);
+        node_row value = row_fma(row_repeat(r + P2G_Z), node_offset, row_repeat(r + P2G_BASE));
+        for (int i = 0; i < nodes; i++) {
+            node_row weight_x = row_scale(weight, r[P2G_WX + i]), here = value;
+            for (int j = 0; j < nodes; j++) {
+                sum[i * nodes + j] = row_fma(row_scale(weight_x, r[P2G_WY + j]), here, sum[i * nodes + j]);
+                here = row_add(here, along_y);
+            }
+            value = row_add(value, along_x);
+        }
+    }
+    for (int i = 0; i < nodes; i++)
+        for (int j = 0; j < nodes; j++) row_store(first + (i * STRIDE_X + j * STRIDE_Y) * NODE, sum[i * nodes + j]);
+    return p;
+}
+
+SIMD_INLINE void scatter_momentum(const tile_work *w, int nodes, real *window) {
+    const real offsets[4] = {0, 1, 2, 3};
+    node_row node_offset = row_spread(offsets);
+    for (int p = 0; p < w->tile->count;) p = scatter_run(w->scratch->records, p, w->tile->count, nodes, node_offset, window);
+}
+
+/* Σ w d and Σ w, in two planes of the damage window. */
+SIMD_INLINE void scatter_damage(const tile_work *w, kernel_kind kernel, int nodes, real *window) {
+    const solid *s = w->state;
+    real *records = w->scratch->records;
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            int32_t pack = w->tile->first_pack + k;
+            int first = k * PACK + part * VEC_LANES;
+            kernel_place at = kernel_locate(kernel, vec3v_load(&s->fields[FIELD_POSITION], pack, part));
+            vec weight[3][4];
+            kernel_weights(kernel, at.u.x, weight[0]);
+            kernel_weights(kernel, at.u.y, weight[1]);
+            kernel_weights(kernel, at.u.z, weight[2]);
+            for (int n = 0; n < 4; n++) {
+                record_put(records, first, P2G_WX + n, weight[0][n]);
+                record_put(records, first, P2G_WY + n, weight[1][n]);
+                record_put(records, first, P2G_WZ + n, weight[2][n]);
+            }
+            record_put(records, first, P2G_NODE, window_index(at.base));
+            record_put(records, first, P2G_DAMAGE, vec_load(field_at(&s->fields[s->damage_field], pack, 0, part)));
+        }
+    for (int p = 0; p < w->tile->count; p++) {
+        const real *r = records + p * RECORD;
+        real *first = window + (int)r[P2G_NODE], damage = r[P2G_DAMAGE];
+        for (int i = 0; i < nodes; i++)
+            for (int j = 0; j < nodes; j++) {
+                real *sums = first + i * STRIDE_X + j * STRIDE_Y, *weights = sums + WINDOW_NODES;
+                real wxy = r[P2G_WX + i] * r[P2G_WY + j];
+                for (int n = 0; n < 4; n++) {
+                    real weight = wxy * r[P2G_WZ + n];
+                    sums[n] += weight * damage;
+                    weights[n] += weight;
+                }
+            }
+    }
+}
+
+/* Exchanges a block's window with the grid, node row by node row: `to_grid` adds, else loads. Only −1 … 6 or −2 … 7 is
+ * touched: what colouring keeps apart. */
+SIMD_INLINE void exchange_window(const solid_block *b, real *window, real *grid, int reals, int slot_reals, bool wide, bool to_grid) {
+    int low = wide ? WINDOW_LOW : WINDOW_LOW + 1, high = wide ? WINDOW_LOW + WINDOW : WINDOW_LOW + WINDOW - 1;
+    for (int n = 0; n < NEIGHBOURS; n++) {
+        if (b->neighbour[n] < 0) continue;
+        int begin[3], end[3], o[3] = {n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1};
+        for (int c = 0; c < 3; c++) {
+            begin[c] = o[c] * BLOCK > low ? o[c] * BLOCK : low;
+            end[c] = o[c] * BLOCK + BLOCK < high ? o[c] * BLOCK + BLOCK : high;
+        }
+        real *slot = grid + (int64_t)b->neighbour[n] * slot_reals;
+        for (int x = begin[0]; x < end[0]; x++)
+            for (int y = begin[1]; y < end[1]; y++) {
+                real *in_window = window + (((x - WINDOW_LOW) * WINDOW + y - WINDOW_LOW) * WINDOW + begin[2] - WINDOW_LOW) * reals;
+                real *in_grid = slot + ((x - o[0] * BLOCK) * BLOCK * BLOCK + (y - o[1] * BLOCK) * BLOCK + begin[2] - o[2] * BLOCK) * reals;
+                int count = (end[2] - begin[2]) * reals;
+                if (to_grid)
+                    for (int i = 0; i < count; i++) in_grid[i] += in_window[i];
+                else
+                    for (int i = 0; i < count; i++) in_window[i] = in_grid[i];
+            }
+    }
+}
+
+static void call_stage(tile_work *w, size_t stage_offset) {
+    const solid *s = w->state;
+    for (int e = 0; e < s->effect_count; e++) {
+        if (!(s->material_mask[w->tile->material] >> e & 1)) continue;
+        void (*stage)(tile_work *);
+        memcpy(&stage, (const char *)s->effects[e]->stages + stage_offset, sizeof stage);
+        if (!stage) continue;
+        w->effect = e;
+        w->constants = s->constants[w->tile->material][e];
+        stage(w);
+    }
+}
+
+#define CALL_STAGE(w, stage) call_stage(w, offsetof(solid_stages, stage))
+
+static void fill(real *to, int count, real value) {
+    for (int i = 0; i < count; i++) to[i] = value;
+}
+
+static tile_work begin_tile(solid *s, int32_t t, int worker, real dt) {
+    tile_work w = {.state = s, .tile = &s->tiles[t], .scratch = &s->workers[worker].tile, .result = &s->tile_results[t], .dt = dt};
+    fill(w.scratch->degradation, w.tile->pack_count * PACK, 1);
+    CALL_STAGE(&w, degrade);
+    return w;
+}
+
+SIMD_INLINE void block_to_grid(transfer_context *t, int32_t block_index, int worker, kernel_kind kernel, kernel_kind laplacian, bool damage) {
+    solid *s = t->state;
+    const solid_block *b = &s->blocks[block_index];
+    solid_worker *own = &s->workers[worker];
+    bool wide = kernel == KERNEL_CUBIC || (damage && laplacian == KERNEL_CUBIC);
+    memset(own->window, 0, sizeof own->window);
+    if (damage) memset(own->damage_window, 0, sizeof own->damage_window);
+    for (int32_t i = b->first_tile; i < b->first_tile + b->tile_count; i++) {
+        tile_work w = begin_tile(s, i, worker, t->dt);
+        fill(w.scratch->kirchhoff, w.tile->pack_count * 6 * PACK, 0);
+        CALL_STAGE(&w, stress);
+        momentum_records(&w, kernel, (real)s->definition.materials[w.tile->material].density);
+        scatter_momentum(&w, kernel == KERNEL_QUADRATIC ? 3 : 4, own->window);
+        if (damage && s->material_mask[w.tile->material] >> EFFECT_damage & 1)
+            scatter_damage(&w, laplacian, laplacian == KERNEL_QUADRATIC ? 3 : 4, own->damage_window);
+    }
+    exchange_window(b, own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, true);
+    if (!damage) return;
+    exchange_window(b, own->damage_window, s->damage_grid, 1, BLOCK_NODES * DAMAGE_NODE, wide, true);
+    exchange_window(b, own->damage_window + WINDOW_NODES, s->damage_grid + BLOCK_NODES, 1, BLOCK_NODES * DAMAGE_NODE, wide, true);
+}
+
+/* ---- grid to particles ------------------------------------------------------------------------------------------- */
+
+SIMD_INLINE void gather_weights(const tile_work *w, kernel_kind kernel) {
+    real *records = w->scratch->records;
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            int first = k * PACK + part * VEC_LANES;
+            kernel_place at = kernel_locate(kernel, vec3v_load(&w->state->fields[FIELD_POSITION], w->tile->first_pack + k, part));
+            vec weight[3][4];
+            kernel_weights(kernel, at.u.x, weight[0]);
+            kernel_weights(kernel, at.u.y, weight[1]);
+            kernel_weights(kernel, at.u.z, weight[2]);
+            for (int n = 0; n < 4; n++) {
+                record_put(records, first, G2P_WX + n, weight[0][n]);
+                record_put(records, first, G2P_WY + n, weight[1][n]);
+                record_put(records, first, G2P_WZ + n, weight[2][n]);
+            }
+            record_put(records, first, G2P_OFFSET + 0, at.u.x);
+            record_put(records, first, G2P_OFFSET + 1, at.u.y);
+            record_put(records, first, G2P_OFFSET + 2, at.u.z);
+            record_put(records, first, G2P_NODE, window_index(at.base));
+        }
+}
+
+/* One particle: Σ w v_i and Σ w v_i (x_i − x_p)ᵀ by separable sums, y first, then x, then z. Results in the record: velocity, then the three
+ * columns. */
+SIMD_INLINE void gather_particle(real *r, int nodes, const node_row node_offset, const real *window) {
+    const real *first = window + (int)r[G2P_NODE] * NODE;
+    node_row plain = {0}, along_x = {0}, along_y = {0};
+    for (int i = 0; i < nodes; i++) {
+        node_row sum = {0}, moment = {0};
+        for (int j = 0; j < nodes; j++) {
+            node_row v = row_load(first + (i * STRIDE_X + j * STRIDE_Y) * NODE);
+            real weight = r[G2P_WY + j];
+            sum = row_scale_add(v, weight, sum);
+            moment = row_scale_add(v, weight * ((real)j - r[G2P_OFFSET + 1]), moment);
+        }
+        real weight = r[G2P_WX + i];
+        plain = row_scale_add(sum, weight, plain);
+        along_x = row_scale_add(sum, weight * ((real)i - r[G2P_OFFSET + 0]), along_x);
+        along_y = row_scale_add(moment, weight, along_y);
+    }
+    node_row weight_z = row_spread(r + G2P_WZ), zero = {0};
+    const real z[4] = {r[G2P_OFFSET + 2], r[G2P_OFFSET + 2], r[G2P_OFFSET + 2], r[G2P_OFFSET + 2]};
+    node_row distance_z = row_scale_add(row_repeat(z), -1, node_offset);
+    node_row weighted = row_fma(plain, weight_z, zero);
+    row_fold(weighted, r + G2P_OUT);
+    row_fold(row_fma(along_x, weight_z, zero), r + G2P_OUT + 4);
+    row_fold(row_fma(along_y, weight_z, zero), r + G2P_OUT + 8);
+    row_fold(row_fma(weighted, distance_z, zero), r + G2P_OUT + 12);
+}
+
+/* Δd at each particle from the nodal damage: N'' of one axis times N of the others. */
+SIMD_INLINE void gather_laplacian(const tile_work *w, kernel_kind kernel, int nodes, const real *window) {
+    real scale = (real)(1 / (w->state->definition.dx * w->state->definition.dx));
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            kernel_place at = kernel_locate(kernel, vec3v_load(&w->state->fields[FIELD_POSITION], w->tile->first_pack + k, part));
+            vec u[3] = {at.u.x, at.u.y, at.u.z}, weight[3][4], curve[3][4], node = window_index(at.base), result = vec_all(0);
+            for (int axis = 0; axis < 3; axis++) {
+                kernel_weights(kernel, u[axis], weight[axis]);
+                if (kernel == KERNEL_QUADRATIC) quadratic_curvatures(curve[axis]);
+                else cubic_curvatures(u[axis], curve[axis]);
+            }
+            for (int lane = 0; lane < VEC_LANES; lane++) {
+                int p = k * PACK + part * VEC_LANES + lane;
+                if (p >= w->tile->count) break;
+                const real *first = window + (int)node[lane];
+                real total = 0;
+                for (int i = 0; i < nodes; i++)
+                    for (int j = 0; j < nodes; j++) {
+                        const real *d = first + i * STRIDE_X + j * STRIDE_Y;
+                        real plain = 0, curved = 0;
+                        for (int n = 0; n < nodes; n++) {
+                            plain += weight[2][n][lane] * d[n];
+                            curved += curve[2][n][lane] * d[n];
+                        }
+                        real wx = weight[0][i][lane], wy = weight[1][j][lane];
+                        total += wx * wy * curved + (curve[0][i][lane] * wy + wx * curve[1][j][lane]) * plain;
+                    }
+                result[lane] = total * scale;
+            }
+            vec_store(scratch_at(w->scratch->laplacian, 1, k, 0, part), result);
+        }
+}
+
+/* What of L the particle carries on as C (METHOD.md §3): all of it, its skew part and a share of the rest, or nothing. */
+SIMD_INLINE mat3v project_affine(const solid_definition *d, mat3v L) {
+    if (d->transfer == TRANSFER_APIC) return L;
+    if (d->transfer != TRANSFER_RPIC) return (mat3v){0};
+    real same = (real)(0.5 * (1 + d->transfer_ratio)), across = (real)(0.5 * (d->transfer_ratio - 1)), ratio = (real)d->transfer_ratio;
+    return (mat3v){ratio * L.xx, same * L.xy + across * L.yx, same * L.xz + across * L.zx,
+                   same * L.yx + across * L.xy, ratio * L.yy, same * L.yz + across * L.zy,
+                   same * L.zx + across * L.xz, same * L.zy + across * L.yz, ratio * L.zz};
+}
+
+/* F ← (I + Δt L) F */
+SIMD_INLINE mat3v advance_deformation(mat3v L, real dt, mat3v F) {
+    vec h = vec_all(dt);
+#define ROW_OF(lx, ly, lz, fx, fy, fz, f) vec_fma(h, vec_fma(lx, fx, vec_fma(ly, fy, lz * fz)), f)
+    return (mat3v){ROW_OF(L.xx, L.xy, L.xz, F.xx, F.yx, F.zx, F.xx), ROW_OF(L.xx, L.xy, L.xz, F.xy, F.yy, F.zy, F.xy),
+                   ROW_OF(L.xx, L.xy, L.xz, F.xz, F.yz, F.zz, F.xz), ROW_OF(L.yx, L.yy, L.yz, F.xx, F.yx, F.zx, F.yx),
+                   ROW_OF(L.yx, L.yy, L.yz, F.xy, F.yy, F.zy, F.yy), ROW_OF(L.yx, L.yy, L.yz, F.xz, F.yz, F.zz, F.yz),
+                   ROW_OF(L.zx, L.zy, L.zz, F.xx, F.yx, F.zx, F.zx), ROW_OF(L.zx, L.zy, L.zz, F.xy, F.yy, F.zy, F.zy),
+                   ROW_OF(L.zx, L.zy, L.zz, F.xz, F.yz, F.zz, F.zz)};
+#undef ROW_OF
+}
+
+/* Lane by lane, whether a vector is finite and moves less than a cell a step. */
+SIMD_INLINE vec_mask is_sound(vec3v step, mat3v F) {
+    vec sum = F.xx + F.xy + F.xz + F.yx + F.yy + F.yz + F.zx + F.zy + F.zz;
+    vec most = vec_max(vec_max(vec_abs(step.x), vec_abs(step.y)), vec_abs(step.z));
+    /* Comparisons with a NaN are false; the product with 0 turns infinities into NaN. */
+    return (sum * 0 == 0) & (most < 1) & (step.x * 0 == 0) & (step.y * 0 == 0) & (step.z * 0 == 0);
+}
+
+/* Moves the particles on; reports the first unsound one and whether any has left its block's margin. */
+SIMD_INLINE void advance_particles(const tile_work *w, kernel_kind kernel) {
+    const solid *s = w->state;
+    const solid_definition *d = &s->definition;
+    const solid_block *b = &s->blocks[w->tile->block];
+    real inverse_d = (real)((kernel == KERNEL_QUADRATIC ? 4.0 : 3.0) / d->dx), per_cell = (real)((double)w->dt / d->dx);
+    real shift = (real)kernel_shift(kernel);
+    vec_mask inside = vec_all(0) == 0;
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            int32_t pack = w->tile->first_pack + k;
+            int first = k * PACK + part * VEC_LANES;
+            const real *records = w->scratch->records;
+            vec out[4][3];
+            for (int column = 0; column < 4; column++)
+                for (int c = 0; c < 3; c++) out[column][c] = record_get(records, first, G2P_OUT + 4 * column + c);
+            vec3v v = {out[0][0], out[0][1], out[0][2]};
+            vec h = vec_all(inverse_d);
+            mat3v L = {h * out[1][0], h * out[2][0], h * out[3][0], h * out[1][1], h * out[2][1],
+                       h * out[3][1], h * out[1][2], h * out[2][2], h * out[3][2]};
+            mat3v F = advance_deformation(L, w->dt, mat3v_load(&s->fields[FIELD_DEFORMATION], pack, part));
+            vec3v step = {per_cell * v.x, per_cell * v.y, per_cell * v.z};
+            vec3v x = vec3v_load(&s->fields[FIELD_POSITION], pack, part);
+            x = (vec3v){x.x + step.x, x.y + step.y, x.z + step.z};
+            vec_mask sound = is_sound(step, F);
+            for (int lane = 0; lane < VEC_LANES; lane++)
+                if (!sound[lane] && !w->result->fault && first + lane < w->tile->count) w->result->fault = first + lane + 1;
+            inside &= (x.x >= (real)b->base_low[0] + shift) & (x.x < (real)(b->base_high[0] + 1) + shift) &
+                      (x.y >= (real)b->base_low[1] + shift) & (x.y < (real)(b->base_high[1] + 1) + shift) &
+                      (x.z >= (real)b->base_low[2] + shift) & (x.z < (real)(b->base_high[2] + 1) + shift);
+            mat3v_store(&s->fields[FIELD_DEFORMATION], pack, part, F);
+            mat3v_store(&s->fields[FIELD_AFFINE], pack, part, project_affine(d, L));
+            vec3v_store(&s->fields[FIELD_VELOCITY], pack, part, v);
+            vec3v_store(&s->fields[FIELD_POSITION], pack, part, x);
+        }
+    w->result->unsorted = vec_any(~inside);
+}
+
+/* The momentum limit: speed of sound of the state that has just been reached, and speed. */
+static void limit_momentum(tile_work *w) {
+    const solid *s = w->state;
+    fill(w->scratch->degradation, w->tile->pack_count * PACK, 1);
+    CALL_STAGE(w, degrade); /* of the new damage */
+    fill(w->scratch->wave_modulus, w->tile->pack_count * PACK, 0);
+    CALL_STAGE(w, wave);
+    vec fastest = vec_all(0);
+    real inverse_density = (real)(1 / s->definition.materials[w->tile->material].density);
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            int32_t pack = w->tile->first_pack + k;
+            vec3v v = vec3v_load(&s->fields[FIELD_VELOCITY], pack, part);
+            vec modulus = vec_load(scratch_at(w->scratch->wave_modulus, 1, k, 0, part));
+            vec speed = vec_sqrt(modulus * inverse_density) + vec_sqrt(vec3v_dot(v, v));
+            vec volume = vec_load(field_at(&s->fields[FIELD_VOLUME], pack, 0, part));
+            fastest = vec_max(vec_select(volume > 0, speed, vec_all(0)), fastest);
+        }
+    w->result->limit[EFFECT_elastic] = vec_largest(fastest) * (real)(1 / s->definition.dx);
+}
+
+SIMD_INLINE void block_to_particles(transfer_context *t, int32_t block_index, int worker, kernel_kind kernel, kernel_kind laplacian, bool damage) {
+    solid *s = t->state;
+    const solid_block *b = &s->blocks[block_index];
+    solid_worker *own = &s->workers[worker];
+    bool wide = kernel == KERNEL_CUBIC || (damage && laplacian == KERNEL_CUBIC);
+    const real offsets[4] = {0, 1, 2, 3};
+    node_row node_offset = row_spread(offsets);
+    exchange_window(b, own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, false);
+    if (damage) exchange_window(b, own->damage_window, s->damage_grid, 1, BLOCK_NODES * DAMAGE_NODE, wide, false);
+    for (int32_t i = b->first_tile; i < b->first_tile + b->tile_count; i++) {
+        tile_work w = {.state = s, .tile = &s->tiles[i], .scratch = &own->tile, .result = &s->tile_results[i], .dt = t->dt};
+        memset(w.result, 0, sizeof *w.result);
+        if (damage && s->material_mask[w.tile->material] >> EFFECT_damage & 1)
+            gather_laplacian(&w, laplacian, laplacian == KERNEL_QUADRATIC ? 3 : 4, own->damage_window);
+        gather_weights(&w, kernel);
+        for (int p = 0; p < w.tile->count; p++)
+            gather_particle(w.scratch->records + p * RECORD, kernel == KERNEL_QUADRATIC ? 3 : 4, node_offset, own->window);
+        for (int p = w.tile->count; p < w.tile->pack_count * PACK; p++)
+            memset(w.scratch->records + p * RECORD + G2P_OUT, 0, 16 * sizeof(real));
+        advance_particles(&w, kernel);
+        CALL_STAGE(&w, update);
+        limit_momentum(&w);
+    }
+}
+
+/* ---- one instance a combination of kernels ----------------------------------------------------------------------- */
+
+#define INSTANCE(name, kernel, laplacian, damage)                                                                      \
+    static void p2g_##name(void *t, int64_t i, int worker) {                                                           \
+        transfer_context *c = t;                                                                                       \
+        block_to_grid(c, c->blocks[i], worker, kernel, laplacian, damage);                                             \
+    }                                                                                                                  \
+    static void g2p_##name(void *t, int64_t i, int worker) {                                                           \
+        block_to_particles(t, (int32_t)i, worker, kernel, laplacian, damage);                                          \
+    }
+
+INSTANCE(quadratic, KERNEL_QUADRATIC, KERNEL_QUADRATIC, false)
+INSTANCE(cubic, KERNEL_CUBIC, KERNEL_CUBIC, false)
+INSTANCE(quadratic_quadratic, KERNEL_QUADRATIC, KERNEL_QUADRATIC, true)
+INSTANCE(quadratic_cubic, KERNEL_QUADRATIC, KERNEL_CUBIC, true)
+INSTANCE(cubic_cubic, KERNEL_CUBIC, KERNEL_CUBIC, true)
+INSTANCE(cubic_quadratic, KERNEL_CUBIC, KERNEL_QUADRATIC, true)
+
+typedef void block_pass(void *context, int64_t i, int worker);
+static block_pass *const to_grid[2][3] = {{p2g_quadratic, p2g_quadratic_quadratic, p2g_quadratic_cubic},
+                                          {p2g_cubic, p2g_cubic_quadratic, p2g_cubic_cubic}};
+static block_pass *const to_particles[2][3] = {{g2p_quadratic, g2p_quadratic_quadratic, g2p_quadratic_cubic},
+                                               {g2p_cubic, g2p_cubic_quadratic, g2p_cubic_cubic}};
+
+static int damage_instance(const solid *s) {
+    if (!s->transfers_damage) return 0;
+    return s->definition.laplacian == KERNEL_QUADRATIC ? 1 : 2;
+}
+
+static void clear_slot(void *context, int64_t slot, int worker) {
+    (void)worker;
+    solid *s = context;
+    memset(s->grid + slot * BLOCK_NODES * NODE, 0, BLOCK_NODES * NODE * sizeof(real));
+    if (s->damage_grid) memset(s->damage_grid + slot * BLOCK_NODES * DAMAGE_NODE, 0, BLOCK_NODES * DAMAGE_NODE * sizeof(real));
+}
+
+void transfer_to_grid(solid *s, real dt) {
+    parallel_for(s->threads, s->slot_count, 64, clear_slot, s);
+    transfer_context t = {.state = s, .dt = dt};
+    block_pass *pass = to_grid[s->definition.kernel == KERNEL_CUBIC][damage_instance(s)];
+    for (int colour = 0; colour < s->colour_count; colour++) {
+        t.blocks = s->colour_blocks + s->colour_start[colour];
+        parallel_for(s->threads, s->colour_start[colour + 1] - s->colour_start[colour], 1, pass, &t);
+    }
+}
+
+void transfer_to_particles(solid *s, real dt) {
+    transfer_context t = {.state = s, .dt = dt};
+    block_pass *pass = to_particles[s->definition.kernel == KERNEL_CUBIC][damage_instance(s)];
+    parallel_for(s->threads, s->block_count, 2, pass, &t);
+}
+
+static void limit_tile(void *context, int64_t i, int worker) {
+    solid *s = context;
+    tile_work w = {.state = s, .tile = &s->tiles[i], .scratch = &s->workers[worker].tile, .result = &s->tile_results[i]};
+    w.result->limit[EFFECT_elastic] = 0;
+    limit_momentum(&w);
+}
+
+void transfer_limits(solid *s) {
+    parallel_for(s->threads, s->tile_count, 8, limit_tile, s);
+}

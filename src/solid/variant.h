@@ -1,0 +1,44 @@
+/* Every file of the solid engine is compiled once a variant; these names keep the variants' symbols apart. */
+#ifndef SUNDER_SOLID_VARIANT_H
+#define SUNDER_SOLID_VARIANT_H
+
+#include "base/simd.h"
+
+#define SOLID_PASTE_(name, precision, simd) name##_f##precision##_##simd
+#define SOLID_PASTE(name, precision, simd) SOLID_PASTE_(name, precision, simd)
+#if SUNDER_SIMD == 2
+#define SOLID_SIMD_NAME avx512
+#elif SUNDER_SIMD == 1
+#define SOLID_SIMD_NAME avx2
+#else
+#define SOLID_SIMD_NAME plain
+#endif
+#define SOLID_VARIANT(name) SOLID_PASTE(name, SUNDER_PRECISION, SOLID_SIMD_NAME)
+
+#define solid_engine_table SOLID_VARIANT(solid_engine_table)
+#define particles_reserve SOLID_VARIANT(particles_reserve)
+#define particles_free SOLID_VARIANT(particles_free)
+#define particles_load SOLID_VARIANT(particles_load)
+#define particles_read SOLID_VARIANT(particles_read)
+#define order_reserve_hash SOLID_VARIANT(order_reserve_hash)
+#define order_clear_hash SOLID_VARIANT(order_clear_hash)
+#define order_grow SOLID_VARIANT(order_grow)
+#define order_reserve_tiles SOLID_VARIANT(order_reserve_tiles)
+#define order_insert SOLID_VARIANT(order_insert)
+#define order_rank SOLID_VARIANT(order_rank)
+#define order_rank_all SOLID_VARIANT(order_rank_all)
+#define order_sort_keys SOLID_VARIANT(order_sort_keys)
+#define order_build_tiles SOLID_VARIANT(order_build_tiles)
+#define particles_sort SOLID_VARIANT(particles_sort)
+#define grid_build SOLID_VARIANT(grid_build)
+#define grid_free SOLID_VARIANT(grid_free)
+#define grid_update SOLID_VARIANT(grid_update)
+#define transfer_to_grid SOLID_VARIANT(transfer_to_grid)
+#define transfer_to_particles SOLID_VARIANT(transfer_to_particles)
+#define transfer_limits SOLID_VARIANT(transfer_limits)
+#define solid_measure SOLID_VARIANT(solid_measure)
+#define solid_save SOLID_VARIANT(solid_save)
+#define solid_restore SOLID_VARIANT(solid_restore)
+#define solid_constants_refresh SOLID_VARIANT(solid_constants_refresh)
+
+#endif

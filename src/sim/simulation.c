@@ -54,7 +54,7 @@ static void define(simulation *s, int threads, solid_definition *d) {
     int gravity = effect_index("gravity");
     if (from_scene->effects[gravity].on) memcpy(d->gravity, from_scene->effects[gravity].value[0], sizeof d->gravity);
     define_materials(s, d);
-    define_boundaries(scene, d);
+    define_boundaries(s->scene, d);
 }
 
 /* The momentum limit shrinks by the scene's cfl; others are limits as they stand. */

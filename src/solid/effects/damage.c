@@ -14,6 +14,7 @@ enum { ETA_INVERSE, CRITICAL_INVERSE2, ALPHA1, ALPHA2, RESIDUAL, ZETA, LENGTH2, 
 enum { KEY_SIGMA_C, KEY_BREAK_STRETCH, KEY_ETA, KEY_ALPHA, KEY_ALPHA2, KEY_RESIDUAL, KEY_ZETA, KEY_LENGTH_SCALE, KEY_COUNT };
 
 #define DRIVING_LIMIT ((real)1e6)
+#define OVERSHOOT ((real)1e-3) /* in d, that a step may leave behind */
 #define BOUND_MARGIN ((real)0.999) /* the early out's bound holds up to round-off */
 
 static void constants(const effect_values *all, const solid_definition *d, bool protects, real out[CONSTANTS]) {
@@ -126,6 +127,16 @@ SIMD_INLINE vec history(const tile_work *w, int32_t pack, int part, vec d, vec H
     return vec_select(open, raised, H);
 }
 
+/* 1/Δt of the explicit update. It relaxes d towards e = (H + l0² Δd)/(1 + H) at the rate (1 + H + bound)/η and overshoots where
+ * Δt times that exceeds 1; the bracket keeps the overshoot. What may be left behind is at most OVERSHOOT, so a particle near e
+ * counts less, and one with 1 − e below OVERSHOOT not at all: d ≤ 1 holds it. */
+SIMD_INLINE vec relaxation_limit(const real *c, vec d, vec H, vec spread) {
+    vec inverse = 1 / (1 + H), rest = (H + spread) * inverse, gap = rest - d;
+    vec rate = (1 + H + c[LAPLACIAN_BOUND]) * c[ETA_INVERSE];
+    vec_mask counts = (d < 1) & (gap > 0) & (1 - rest > OVERSHOOT);
+    return vec_select(counts, rate * gap / (gap + OVERSHOOT), vec_all(0));
+}
+
 static void update(tile_work *w) {
     const solid_field *damage = &w->state->fields[w->state->damage_field];
     const solid_field *histories = &w->state->fields[w->state->history_field];
@@ -144,8 +155,7 @@ static void update(tile_work *w) {
             vec_store(field_at(damage, pack, 0, part), d);
             vec_store(field_at(histories, pack, 0, part), H);
             vec alive = vec_load(field_at(&w->state->fields[FIELD_VOLUME], pack, 0, part));
-            vec here = (1 + H + c[LAPLACIAN_BOUND]) * c[ETA_INVERSE];
-            limit = vec_max(vec_select((d < 1) & (alive > 0) & (H > 0), here, vec_all(0)), limit);
+            limit = vec_max(vec_select(alive > 0, relaxation_limit(c, d, H, spread), vec_all(0)), limit);
         }
     w->result->limit[w->effect] = vec_largest(limit);
 }

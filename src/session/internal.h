@@ -1,0 +1,75 @@
+/* What the files of this floor share. */
+#ifndef SUNDER_SESSION_INTERNAL_H
+#define SUNDER_SESSION_INTERNAL_H
+
+#include "base/json.h"
+#include "session/session.h"
+#include "sim/simulation.h"
+#include "store/frames.h"
+#include "store/ledger.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+enum { SESSION_PATH = 1024, SESSION_SETTINGS = 64 };
+
+/* How a run was asked for, kept in its folder so that it can be resumed and reproduced with the same bits. */
+typedef struct run_request {
+    char scene[256], recipe[128], simd[16]; /* scene: path as given, or within the run's folder */
+    int precision;
+    int64_t frames; /* −1: the scene's */
+    int setting_count;
+    char setting_text[SESSION_SETTINGS][256];
+    script_setting settings[SESSION_SETTINGS]; /* into setting_text */
+} run_request;
+
+struct session {
+    session_options options;
+    run_request request;
+    script *script;
+    scene *scene;
+    simulation *simulation;
+    ledger *ledger;
+    char id[LEDGER_ID], folder[SESSION_PATH], database[SESSION_PATH], hash[32];
+    int64_t target; /* last frame */
+
+    pthread_t thread;
+    bool threaded;
+    atomic_int stop, abandon, paused, steps_asked, ended;
+    pthread_mutex_t lock; /* guards shown */
+    session_snapshot shown;
+
+    simulation_measures measures;
+    session_sample sample;
+    double wall_start, wall, step_wall, last_frame_wall;
+    int64_t frames_written, steps_before; /* steps before this session: a resumed run counts only its own for speed */
+    bool first_crack_told;
+    char warning[512];
+    status outcome;
+    report report;
+    json_writer summary;
+};
+
+double session_clock(void);
+
+/* folder.c */
+status request_from_options(run_request *q, const session_options *options, report *r);
+status request_write(const session *s, report *r);
+status request_read(run_request *q, const char *folder, report *r);
+status sources_write(const session *s, report *r);
+void sources_hash(const script *from, char hash[32]);
+
+/* publish.c */
+void publish_start(session *s);
+void publish_state(session *s, session_state state);
+status publish_frame(session *s, report *r);
+
+/* summary.c */
+status summary_write(session *s, report *r);
+
+/* loop.c */
+void *session_loop(void *argument);
+/* Warns on the screen and in the ledger. */
+void session_warn(session *s, const char *text);
+
+#endif

@@ -1,0 +1,155 @@
+/* The loop of a run: a frame, its measures, its file, its ledger row. */
+#include "session/internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+double session_clock(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+void session_warn(session *s, const char *text) {
+    report ignored;
+    snprintf(s->warning, sizeof s->warning, "%s", text);
+    (void)ledger_event(s->ledger, s->id, simulation_frame(s->simulation), "warning", text, &ignored);
+}
+
+/* A ledger that fails must not cost the run its frames: the user is warned and the run goes on. */
+static void tolerate(session *s, status code, const report *r) {
+    if (code == STATUS_OK) return;
+    char text[sizeof s->warning];
+    report_format(r, text, sizeof text);
+    snprintf(s->warning, sizeof s->warning, "ledger: %.480s", text);
+}
+
+static void log_frame(session *s, double seconds) {
+    const solid_measures *m = &s->measures.solid;
+    const ledger_value values[] = {
+        {"kinetic", m->kinetic}, {"elastic", m->elastic}, {"fibre", m->fibre}, {"gravitational", m->gravitational},
+        {"grip_work", m->grip_work}, {"dissipated", s->measures.dissipated}, {"damage_mean", m->damage_mean},
+        {"damage_max", m->damage_max}, {"broken_fraction", m->broken_fraction},
+        {"crack_normal_x", s->measures.has_crack ? s->measures.crack_normal[0] : NAN},
+        {"crack_normal_y", s->measures.has_crack ? s->measures.crack_normal[1] : NAN},
+        {"crack_normal_z", s->measures.has_crack ? s->measures.crack_normal[2] : NAN},
+        {"determinant_min", m->determinant_min}, {"determinant_max", m->determinant_max}, {"speed_max", m->speed_max},
+        {"dt_min", s->measures.dt_min},
+    };
+    report r;
+    tolerate(s, ledger_frame(s->ledger, s->id, s->measures.frame, s->measures.time, s->measures.steps, seconds, values,
+                             sizeof values / sizeof *values, &r), &r);
+    if (m->damage_max > 0.9 && !s->first_crack_told) {
+        char text[96];
+        s->first_crack_told = true;
+        snprintf(text, sizeof text, "first particle over 0.9 at t = %.6g", s->measures.time);
+        tolerate(s, ledger_event(s->ledger, s->id, s->measures.frame, "first_crack", text, &r), &r);
+    }
+}
+
+static void take_sample(session *s, double seconds) {
+    const solid_measures *m = &s->measures.solid;
+    s->sample = (session_sample){.frame = s->measures.frame, .time = s->measures.time, .seconds = seconds, .kinetic = m->kinetic,
+                                 .elastic = m->elastic, .fibre = m->fibre, .work = m->grip_work, .damage_mean = m->damage_mean,
+                                 .damage_max = m->damage_max, .broken_fraction = m->broken_fraction, .dt = s->measures.dt_min};
+    memcpy(s->sample.histogram, m->histogram, sizeof s->sample.histogram);
+}
+
+static frame_header header_of(const session *s) {
+    const simulation_plan *plan = simulation_get_plan(s->simulation);
+    return (frame_header){.frame = simulation_frame(s->simulation), .step = simulation_steps(s->simulation),
+                          .time = simulation_time(s->simulation), .run_id = s->id, .units = s->scene->units,
+                          .scene_title = s->scene->title, .scene_hash = s->hash, .version = SUNDER_VERSION,
+                          .precision = plan->precision == 32 ? "f32" : "f64", .simd = plan->simd};
+}
+
+static status write_frame(session *s, report *r) {
+    record_list records = {0};
+    frame_header header = header_of(s);
+    status code = simulation_frame_records(s->simulation, &records, r);
+    if (code == STATUS_OK) code = frame_write(s->folder, &header, &records, s->options.deflate, r);
+    record_clear(&records);
+    return code;
+}
+
+static status write_checkpoint(session *s, report *r) {
+    record_list records = {0};
+    frame_header header = header_of(s);
+    status code = simulation_save(s->simulation, &records, r);
+    if (code == STATUS_OK) code = checkpoint_write(s->folder, &header, &records, r);
+    record_clear(&records);
+    if (code == STATUS_OK && s->options.keep > 0) code = checkpoint_thin(s->folder, s->options.keep, r);
+    return code;
+}
+
+/* Measures the state that has been reached, shows it, files it. */
+static status settle_frame(session *s, double seconds, bool file, report *r) {
+    status code = simulation_measure(s->simulation, &s->measures, r);
+    if (code != STATUS_OK) return code;
+    const char *warning = simulation_take_warning(s->simulation);
+    if (warning[0]) session_warn(s, warning);
+    take_sample(s, seconds);
+    if (file && (code = write_frame(s, r)) != STATUS_OK) return code;
+    if (file) log_frame(s, seconds);
+    int every = s->options.checkpoint_every;
+    bool due = every > 0 && (s->measures.frame % every == 0 || s->measures.frame == s->target || atomic_load(&s->stop));
+    if (file && due && (code = write_checkpoint(s, r)) != STATUS_OK) return code;
+    return publish_frame(s, r);
+}
+
+/* While paused: waits for a step, an end of the pause, or a stop. True when a frame should be made. */
+static bool may_go_on(session *s) {
+    bool told = false;
+    while (atomic_load(&s->paused) && !atomic_load(&s->stop) && !atomic_load(&s->abandon)) {
+        if (atomic_load(&s->steps_asked) > 0) {
+            atomic_fetch_sub(&s->steps_asked, 1);
+            return true;
+        }
+        if (!told) publish_state(s, SESSION_PAUSED);
+        told = true;
+        nanosleep(&(struct timespec){.tv_nsec = 5000000}, NULL);
+    }
+    if (told) publish_state(s, SESSION_RUNNING);
+    return !atomic_load(&s->stop) && !atomic_load(&s->abandon);
+}
+
+static status run_frames(session *s, report *r) {
+    bool resumed = s->options.resume != NULL;
+    status code = settle_frame(s, 0, !resumed, r);
+    while (code == STATUS_OK && simulation_frame(s->simulation) < s->target) {
+        if (!may_go_on(s))
+            return report_set(r, STATUS_INTERRUPTED, "interrupted after frame %lld of %lld", (long long)simulation_frame(s->simulation),
+                              (long long)s->target);
+        double start = session_clock();
+        code = simulation_advance(s->simulation, &s->abandon, r);
+        double seconds = session_clock() - start;
+        s->step_wall += seconds;
+        if (code == STATUS_OK) code = settle_frame(s, seconds, true, r);
+        s->last_frame_wall = session_clock() - start;
+    }
+    return code;
+}
+
+static void finish(session *s) {
+    report r;
+    char message[768] = "";
+    if (s->outcome != STATUS_OK) report_format(&s->report, message, sizeof message);
+    const char *word = s->outcome == STATUS_OK ? "done" : s->outcome == STATUS_INTERRUPTED ? "interrupted" : "failed";
+    status code = summary_write(s, &r);
+    if (code != STATUS_OK && s->outcome == STATUS_OK) s->outcome = code, s->report = r;
+    code = ledger_finish(s->ledger, s->id, word, simulation_frame(s->simulation), simulation_steps(s->simulation),
+                         session_clock() - s->wall_start, message[0] ? message : NULL, s->summary.text, &r);
+    if (code != STATUS_OK && s->outcome == STATUS_OK) s->outcome = code, s->report = r;
+}
+
+void *session_loop(void *argument) {
+    session *s = argument;
+    report_clear(&s->report);
+    s->outcome = run_frames(s, &s->report);
+    finish(s);
+    publish_state(s, SESSION_ENDED);
+    atomic_store(&s->ended, 1);
+    return NULL;
+}

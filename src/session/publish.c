@@ -1,0 +1,160 @@
+/* What screens see: a snapshot that the loop refreshes and anyone may copy. */
+#include "base/memory.h"
+#include "session/internal.h"
+
+#include <stdio.h>
+#include <string.h>
+
+void publish_start(session *s) {
+    session_snapshot *p = &s->shown;
+    const simulation_plan *plan = simulation_get_plan(s->simulation);
+    snprintf(p->run_id, sizeof p->run_id, "%s", s->id);
+    snprintf(p->title, sizeof p->title, "%s", s->scene->title);
+    snprintf(p->output, sizeof p->output, "%.511s", s->folder);
+    snprintf(p->precision, sizeof p->precision, "f%d", plan->precision);
+    snprintf(p->simd, sizeof p->simd, "%s", plan->simd);
+    for (int i = 0; i < s->scene->parameter_count; i++)
+        if (strcmp(s->scene->parameters[i].name, "variant") == 0)
+            snprintf(p->variant, sizeof p->variant, "%.63s", s->scene->parameters[i].text);
+    for (int e = 0; e < plan->effect_count && p->effect_count < SESSION_EFFECTS; e++)
+        if (plan->mask >> e & 1) snprintf(p->effects[p->effect_count++], sizeof p->effects[0], "%s", plan->effects[e]->name);
+    p->threads = plan->threads;
+    p->particles = plan->particles;
+    p->frames = s->target;
+    p->duration = (double)s->target / s->scene->fps;
+}
+
+/* Everything of the snapshot that changes between frames; the caller holds the lock. */
+static void refresh(session *s, session_state state) {
+    session_snapshot *p = &s->shown;
+    p->version++;
+    p->state = state;
+    p->outcome = s->outcome;
+    snprintf(p->message, sizeof p->message, "%s", s->warning);
+    if (state == SESSION_ENDED && s->outcome != STATUS_OK) report_format(&s->report, p->message, sizeof p->message);
+    p->wall = session_clock() - s->wall_start;
+    p->step_wall = s->step_wall;
+}
+
+void publish_state(session *s, session_state state) {
+    pthread_mutex_lock(&s->lock);
+    refresh(s, state);
+    pthread_mutex_unlock(&s->lock);
+}
+
+static status reserve_points(session_snapshot *p, int64_t count, report *r) {
+    if (count <= p->point_capacity) return STATUS_OK;
+    session_snapshot_free(p);
+    size_t n = (size_t)count;
+    p->point_capacity = count;
+    p->position = memory_allocate_array(n, 3 * sizeof *p->position);
+    p->damage = memory_allocate_array(n, sizeof *p->damage);
+    p->body = memory_allocate_array(n, sizeof *p->body);
+    if (p->position && p->damage && p->body) return STATUS_OK;
+    session_snapshot_free(p);
+    return report_set(r, STATUS_SYSTEM, "out of memory for the picture of %lld points", (long long)count);
+}
+
+void session_snapshot_free(session_snapshot *p) {
+    size_t n = (size_t)p->point_capacity;
+    memory_free(p->position, n * 3 * sizeof *p->position);
+    memory_free(p->damage, n * sizeof *p->damage);
+    memory_free(p->body, n * sizeof *p->body);
+    p->position = p->damage = NULL;
+    p->body = NULL;
+    p->point_capacity = p->point_count = 0;
+}
+
+static void push_history(session_snapshot *p, const session_sample *sample) {
+    if (p->history_count == SESSION_HISTORY)
+        memmove(p->history, p->history + 1, (SESSION_HISTORY - 1) * sizeof p->history[0]);
+    else
+        p->history_count++;
+    p->history[p->history_count - 1] = *sample;
+}
+
+static void fill_bounds(session_snapshot *p) {
+    for (int c = 0; c < 3; c++) p->bounds_minimum[c] = p->bounds_maximum[c] = p->position[c];
+    for (int64_t i = 0; i < p->point_count; i++)
+        for (int c = 0; c < 3; c++) {
+            float x = p->position[3 * i + c];
+            if (x < p->bounds_minimum[c]) p->bounds_minimum[c] = x;
+            if (x > p->bounds_maximum[c]) p->bounds_maximum[c] = x;
+        }
+}
+
+/* Positions and damage, read outside the lock into `wide`, then copied. */
+static void fill_points(session *s, const double *position, const double *damage) {
+    session_snapshot *p = &s->shown;
+    bool first = p->point_count == 0;
+    p->point_count = p->particles;
+    const uint8_t *body = simulation_bodies(s->simulation);
+    for (int64_t i = 0; i < p->point_count; i++) {
+        for (int c = 0; c < 3; c++) p->position[3 * i + c] = (float)position[3 * i + c];
+        p->damage[i] = damage ? (float)damage[i] : 0;
+        p->body[i] = body[i];
+    }
+    if (first) fill_bounds(p);
+}
+
+status publish_frame(session *s, report *r) {
+    solid *state;
+    const solid_engine *engine = simulation_engine(s->simulation, &state);
+    size_t n = (size_t)s->shown.particles;
+    double *position = memory_allocate_array(n, 3 * sizeof *position), *damage = memory_allocate_array(n, sizeof *damage);
+    status code = position && damage ? STATUS_OK : report_set(r, STATUS_SYSTEM, "out of memory for the picture");
+    if (code == STATUS_OK) {
+        engine->read(state, "position", position);
+        bool damaged = engine->read(state, "damage", damage) > 0;
+        pthread_mutex_lock(&s->lock);
+        session_snapshot *p = &s->shown;
+        code = reserve_points(p, p->particles, r);
+        if (code == STATUS_OK) fill_points(s, position, damaged ? damage : NULL);
+        p->frame = simulation_frame(s->simulation);
+        p->step = simulation_steps(s->simulation);
+        p->time = simulation_time(s->simulation);
+        p->dt = s->sample.dt;
+        p->dt_min = s->measures.dt_min;
+        p->dt_max = s->measures.dt_max;
+        p->now = s->sample;
+        p->seconds_per_frame = s->last_frame_wall;
+        p->seconds_left = s->last_frame_wall * (double)(s->target - p->frame);
+        push_history(p, &s->sample);
+        refresh(s, atomic_load(&s->paused) ? SESSION_PAUSED : SESSION_RUNNING);
+        pthread_mutex_unlock(&s->lock);
+    }
+    memory_free(position, position ? n * 3 * sizeof *position : 0);
+    memory_free(damage, damage ? n * sizeof *damage : 0);
+    return code;
+}
+
+/* Copies arrays into the reader's own, which keep their capacity from poll to poll. */
+static bool copy_points(session_snapshot *to, const session_snapshot *from, session_snapshot kept) {
+    to->position = kept.position;
+    to->damage = kept.damage;
+    to->body = kept.body;
+    to->point_capacity = kept.point_capacity;
+    report r;
+    if (reserve_points(to, from->point_count, &r) != STATUS_OK) {
+        to->point_count = 0;
+        return false;
+    }
+    memcpy(to->position, from->position, (size_t)from->point_count * 3 * sizeof *to->position);
+    memcpy(to->damage, from->damage, (size_t)from->point_count * sizeof *to->damage);
+    memcpy(to->body, from->body, (size_t)from->point_count * sizeof *to->body);
+    to->point_count = from->point_count;
+    return true;
+}
+
+bool session_poll(session *s, session_snapshot *snapshot) {
+    pthread_mutex_lock(&s->lock);
+    bool fresh = s->shown.version != snapshot->version;
+    if (fresh) {
+        session_snapshot kept = *snapshot;
+        *snapshot = s->shown;
+        if (s->shown.point_count > 0) copy_points(snapshot, &s->shown, kept);
+        else snapshot->position = kept.position, snapshot->damage = kept.damage, snapshot->body = kept.body, snapshot->point_capacity = kept.point_capacity;
+    }
+    pthread_mutex_unlock(&s->lock);
+    return fresh;
+}

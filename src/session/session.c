@@ -1,0 +1,246 @@
+#include "session/session.h"
+
+#include "base/memory.h"
+#include "session/internal.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+session_options session_options_default(void) {
+    return (session_options){.script = script_options_default(), .simd = "auto", .precision = 32, .frames = -1,
+                             .checkpoint_every = 1, .keep = 2, .deflate = 1};
+}
+
+static status open_ledger(session *s, report *r) {
+    status code = STATUS_OK;
+    if (s->options.database) snprintf(s->database, sizeof s->database, "%s", s->options.database);
+    else code = ledger_default_path(s->database, sizeof s->database, r);
+    return code == STATUS_OK ? ledger_open(s->database, &s->ledger, r) : code;
+}
+
+static status find_resumed(session *s, report *r) {
+    status code = ledger_resolve(s->ledger, s->options.resume, s->id, s->folder, sizeof s->folder, r);
+    if (code == STATUS_OK) code = request_read(&s->request, s->folder, r);
+    return code;
+}
+
+static status load_scene(session *s, script_reports *reports) {
+    script_options options = s->options.script;
+    options.recipe = s->request.recipe[0] ? s->request.recipe : NULL;
+    options.settings = s->request.settings;
+    options.setting_count = s->request.setting_count;
+    status code = script_load(s->request.scene, &options, &s->script, reports);
+    if (code != STATUS_OK) return code;
+    s->scene = script_scene(s->script);
+    sources_hash(s->script, s->hash);
+    return STATUS_OK;
+}
+
+static status make_simulation(session *s, report *r) {
+    simulation_options options = {.threads = s->options.threads, .precision = s->request.precision, .simd = s->request.simd};
+    status code = simulation_create(s->scene, &options, &s->simulation, r);
+    if (code != STATUS_OK) return code;
+    s->target = s->request.frames >= 0 ? s->request.frames : scene_frames(s->scene);
+    return STATUS_OK;
+}
+
+/* Back to the last checkpoint; frames after it are written again. */
+static status restore(session *s, report *r) {
+    record_list records = {0};
+    int64_t frame = 0;
+    report warning;
+    report_clear(&warning);
+    status code = checkpoint_read_last(s->folder, &records, &frame, &warning, r);
+    if (code == STATUS_OK) code = simulation_restore(s->simulation, &records, r);
+    record_clear(&records);
+    if (code == STATUS_OK) code = frame_truncate(s->folder, frame, r);
+    if (code == STATUS_OK) code = ledger_reopen(s->ledger, s->id, r);
+    if (code != STATUS_OK) return code;
+    if (warning.code != STATUS_OK) {
+        char text[512];
+        report_format(&warning, text, sizeof text);
+        session_warn(s, text);
+    }
+    s->steps_before = simulation_steps(s->simulation);
+    if (s->options.frames >= 0) s->target = frame + s->options.frames;
+    return STATUS_OK;
+}
+
+static void effect_names(const simulation_plan *plan, char *text, size_t size) {
+    size_t used = 0;
+    text[0] = '\0';
+    for (int e = 0; e < plan->effect_count; e++)
+        if ((plan->mask >> e & 1) && used < size)
+            used += (size_t)snprintf(text + used, size - used, "%s%s", used ? "," : "", plan->effects[e]->name);
+}
+
+static const char *variant_of(const scene *s) {
+    for (int i = 0; i < s->parameter_count; i++)
+        if (strcmp(s->parameters[i].name, "variant") == 0) return s->parameters[i].text;
+    return NULL;
+}
+
+static status log_parameters(session *s, report *r) {
+    for (int i = 0; i < s->scene->parameter_count; i++) {
+        const scene_parameter *p = &s->scene->parameters[i];
+        status code = ledger_parameter(s->ledger, s->id, p->name, p->unit, p->number, p->is_text ? p->text : NULL, p->from_set, r);
+        if (code != STATUS_OK) return code;
+    }
+    return STATUS_OK;
+}
+
+/* The run's folder as an absolute path: --out, or a folder named by the id. */
+static status choose_folder(session *s, report *r) {
+    char base[SESSION_PATH];
+    if (s->options.output) {
+        if (s->options.output[0] == '/') snprintf(s->folder, sizeof s->folder, "%s", s->options.output);
+        else {
+            if (!getcwd(base, sizeof base)) return report_set(r, STATUS_SYSTEM, "current folder: %s", strerror(errno));
+            snprintf(s->folder, sizeof s->folder, "%.700s/%.300s", base, s->options.output);
+        }
+        return STATUS_OK;
+    }
+    status code = ledger_runs_folder(base, sizeof base, r);
+    if (code == STATUS_OK) snprintf(s->folder, sizeof s->folder, "%.900s/%s", base, s->id);
+    return code;
+}
+
+static status begin_row(session *s, report *r) {
+    const simulation_plan *plan = simulation_get_plan(s->simulation);
+    char effects[256];
+    effect_names(plan, effects, sizeof effects);
+    ledger_run run = {.scene_path = s->options.scene_path, .scene_title = s->scene->title, .scene_hash = s->hash,
+                      .variant = variant_of(s->scene), .command = s->options.command, .output = s->folder,
+                      .precision = plan->precision == 32 ? "f32" : "f64", .simd = plan->simd, .version = SUNDER_VERSION,
+                      .effects = effects, .threads = plan->threads, .particles = plan->particles, .frames_wanted = s->target,
+                      .seed = (int64_t)s->scene->seed};
+    return ledger_begin(s->ledger, &run, s->id, r);
+}
+
+/* A new run: its row, its folder, its scripts. The row ends as failed when the folder cannot be made. */
+static status begin(session *s, report *r) {
+    status code = STATUS_OK;
+    if (s->options.output) {
+        code = choose_folder(s, r);
+        if (code == STATUS_OK) code = run_folder_create(s->folder, false, r);
+    }
+    if (code == STATUS_OK) code = begin_row(s, r);
+    if (code != STATUS_OK) return code;
+    if (!s->options.output) {
+        code = choose_folder(s, r);
+        if (code == STATUS_OK) code = run_folder_create(s->folder, false, r);
+        if (code == STATUS_OK) code = ledger_set_output(s->ledger, s->id, s->folder, r);
+    }
+    if (code == STATUS_OK) code = log_parameters(s, r);
+    if (code == STATUS_OK) code = sources_write(s, r);
+    if (code == STATUS_OK) code = request_write(s, r);
+    if (code == STATUS_OK) return code;
+    char text[768];
+    report ignored;
+    report_format(r, text, sizeof text);
+    (void)ledger_finish(s->ledger, s->id, "failed", 0, 0, 0, text, NULL, &ignored);
+    return code;
+}
+
+static status prepare(session *s, script_reports *reports) {
+    report *r = &reports->items[0];
+    reports->count = 0;
+    status code = STATUS_OK;
+    if (s->options.resume) {
+        code = open_ledger(s, r);
+        if (code == STATUS_OK) code = find_resumed(s, r);
+    } else {
+        code = request_from_options(&s->request, &s->options, r);
+    }
+    if (code == STATUS_OK) {
+        code = load_scene(s, reports);
+        if (code != STATUS_OK) return code; /* the script has filled in its reports */
+        code = make_simulation(s, r);
+    }
+    if (code == STATUS_OK && !s->ledger) code = open_ledger(s, r);
+    if (code == STATUS_OK) code = s->options.resume ? restore(s, r) : begin(s, r);
+    reports->count = code != STATUS_OK;
+    return code;
+}
+
+status session_start(const session_options *options, session **out, script_reports *reports) {
+    *out = NULL;
+    session *s = memory_allocate(sizeof *s);
+    if (!s) {
+        reports->count = 1;
+        return report_set(&reports->items[0], STATUS_SYSTEM, "out of memory for the session");
+    }
+    s->options = *options;
+    s->wall_start = session_clock();
+    pthread_mutex_init(&s->lock, NULL);
+    atomic_store(&s->paused, options->start_paused);
+    status code = prepare(s, reports);
+    if (code == STATUS_OK) {
+        publish_start(s);
+        if (pthread_create(&s->thread, NULL, session_loop, s) != 0) {
+            reports->count = 1;
+            code = report_set(&reports->items[0], STATUS_SYSTEM, "no thread for the simulation");
+        } else {
+            s->threaded = true;
+        }
+    }
+    if (code != STATUS_OK) {
+        session_destroy(s);
+        return code;
+    }
+    *out = s;
+    return STATUS_OK;
+}
+
+void session_pause(session *s, bool paused) {
+    atomic_store(&s->paused, paused);
+}
+
+void session_step_once(session *s) {
+    atomic_fetch_add(&s->steps_asked, 1);
+}
+
+void session_stop(session *s) {
+    atomic_store(&s->stop, 1);
+}
+
+void session_abandon(session *s) {
+    atomic_store(&s->abandon, 1);
+}
+
+bool session_wait(session *s, double seconds) {
+    double end = session_clock() + seconds;
+    while (!atomic_load(&s->ended) && (seconds < 0 || session_clock() < end))
+        nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
+    return atomic_load(&s->ended);
+}
+
+status session_outcome(session *s, report *r) {
+    *r = s->report;
+    return s->outcome;
+}
+
+const char *session_summary(session *s) {
+    return s->summary.text;
+}
+
+void session_destroy(session *s) {
+    if (!s) return;
+    if (s->threaded) {
+        if (!atomic_load(&s->ended)) session_stop(s);
+        pthread_join(s->thread, NULL);
+    }
+    simulation_destroy(s->simulation);
+    if (s->script) script_close(s->script);
+    if (s->ledger) ledger_close(s->ledger);
+    session_snapshot_free(&s->shown);
+    json_free(&s->summary);
+    pthread_mutex_destroy(&s->lock);
+    memory_free(s, sizeof *s);
+}

@@ -154,6 +154,11 @@ const simulation_plan *simulation_get_plan(const simulation *s) {
     return &s->plan;
 }
 
+int simulation_stages(const simulation_plan *plan, char (*text)[48], int limit) {
+    const solid_engine *engine = solid_engine_find(plan->precision, plan->simd);
+    return engine->stages(plan->mask, text, limit);
+}
+
 /* ---- stepping ---------------------------------------------------------------------------------------------------- */
 
 /* What grips and colliders share, from the scene. */

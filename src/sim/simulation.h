@@ -52,6 +52,9 @@ void simulation_destroy(simulation *s);
 
 const simulation_plan *simulation_get_plan(const simulation *s);
 
+/* What runs within a step, in order; returns how many names were written. */
+int simulation_stages(const simulation_plan *plan, char (*text)[48], int limit);
+
 /* Advances by one frame. `abandon` (may be NULL) is looked at between steps: STATUS_INTERRUPTED leaves a state between frames that must
  * not be written. STATUS_DIVERGED says effect, particle and step. */
 status simulation_advance(simulation *s, const atomic_int *abandon, report *r);

@@ -3,6 +3,8 @@
 #include "solid/order.h"
 
 #include <math.h>
+#include <stddef.h>
+#include <stdio.h>
 #include <time.h>
 
 #define SOLID_EFFECT_ADDRESS(name) &SOLID_EFFECT(name),
@@ -205,6 +207,29 @@ static void phases(const solid *s, double seconds[SOLID_PHASES]) {
     memcpy(seconds, s->seconds, sizeof s->seconds);
 }
 
+/* The stages of a step in the order in which transfer.c and grid.c call them. */
+static int stage_names(uint32_t mask, char (*text)[48], int limit) {
+    static const struct {
+        const char *pass, *name;
+        size_t offset;
+    } places[] = {
+        {"p2g", "degrade", offsetof(solid_stages, degrade)}, {NULL, "stress", offsetof(solid_stages, stress)},
+        {"grid", "grid", offsetof(solid_stages, grid)},      {"g2p", "update", offsetof(solid_stages, update)},
+        {NULL, "degrade", offsetof(solid_stages, degrade)},  {NULL, "wave", offsetof(solid_stages, wave)},
+    };
+    int count = 0;
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        if (places[i].pass && count < limit) snprintf(text[count++], sizeof text[0], "%s", places[i].pass);
+        for (int e = 0; e < SOLID_EFFECTS; e++) {
+            void (*stage)(void);
+            memcpy(&stage, (const char *)effects[e]->stages + places[i].offset, sizeof stage);
+            if ((mask >> e & 1) && stage && count < limit)
+                snprintf(text[count++], sizeof text[0], "%s.%s", effects[e]->name, places[i].name);
+        }
+    }
+    return count;
+}
+
 #define TEXT_(x) #x
 #define TEXT(x) TEXT_(x)
 
@@ -212,5 +237,5 @@ const solid_engine solid_engine_table = {
     .simd = TEXT(SOLID_SIMD_NAME), .precision = SUNDER_PRECISION, .effects = effects, .effect_count = SOLID_EFFECTS,
     .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .sort = sort, .step = step,
     .measure = solid_measure, .read = particles_read, .components = components, .save = solid_save, .restore = solid_restore,
-    .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = phases,
+    .stages = stage_names, .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = phases,
 };

@@ -108,11 +108,10 @@ void order_sort_keys(solid *s, int64_t count, int32_t blocks) {
 }
 
 status order_reserve_tiles(solid *s, int32_t tiles, int32_t blocks, report *r) {
-    int32_t capacity = s->tile_capacity, colour_capacity = s->block_capacity;
-    status code = order_grow((void **)&s->tile_results, &capacity, tiles, sizeof *s->tile_results, "tiles", r);
+    status code = order_grow((void **)&s->tile_results, &s->result_capacity, tiles, sizeof *s->tile_results, "tiles", r);
     if (code == STATUS_OK) code = order_grow((void **)&s->tiles, &s->tile_capacity, tiles, sizeof *s->tiles, "tiles", r);
     if (code == STATUS_OK)
-        code = order_grow((void **)&s->colour_blocks, &colour_capacity, blocks, sizeof *s->colour_blocks, "blocks", r);
+        code = order_grow((void **)&s->colour_blocks, &s->colour_capacity, blocks, sizeof *s->colour_blocks, "blocks", r);
     if (code == STATUS_OK) code = order_grow((void **)&s->blocks, &s->block_capacity, blocks, sizeof *s->blocks, "blocks", r);
     return code;
 }

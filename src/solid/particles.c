@@ -44,9 +44,9 @@ void particles_free(solid *s) {
     for (int i = 0; i < s->field_count; i++) memory_free(s->fields[i].data, field_bytes(&s->fields[i], s->pack_capacity));
     memory_free(s->id, (size_t)s->pack_capacity * PACK * sizeof *s->id);
     memory_free(s->tiles, (size_t)s->tile_capacity * sizeof *s->tiles);
-    memory_free(s->tile_results, (size_t)s->tile_capacity * sizeof *s->tile_results);
+    memory_free(s->tile_results, (size_t)s->result_capacity * sizeof *s->tile_results);
     memory_free(s->blocks, (size_t)s->block_capacity * sizeof *s->blocks);
-    memory_free(s->colour_blocks, (size_t)s->block_capacity * sizeof *s->colour_blocks);
+    memory_free(s->colour_blocks, (size_t)s->colour_capacity * sizeof *s->colour_blocks);
     memory_free(s->block_keys, (size_t)s->hash_capacity * sizeof *s->block_keys);
     memory_free(s->block_ranks, (size_t)s->hash_capacity * sizeof *s->block_ranks);
     memory_free(s->block_list, (size_t)s->block_list_capacity * sizeof *s->block_list);

@@ -101,6 +101,9 @@ typedef struct solid_engine {
     /* The whole state, bit for bit. `restore` needs a solid created from the same definition. */
     status (*save)(const solid *s, record_list *list, report *r);
     status (*restore)(solid *s, const record_list *list, report *r);
+    /* Lists what runs within a step for effects in `mask`, in order: "p2g", "damage.degrade", … Returns how many; text has room for
+     * `limit` names. */
+    int (*stages)(uint32_t mask, char (*text)[48], int limit);
     /* A knob was turned: values in the definition's materials changed. */
     void (*refresh)(solid *s);
     /* Bytes a particle, and seconds spent by phase since the start: sort, p2g, grid, g2p. */

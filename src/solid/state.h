@@ -97,12 +97,12 @@ struct solid {
     solid_field fields[FIELD_LIMIT];
     int damage_field, history_field, fibre_field, fibre2_field; /* indices, −1 when absent */
 
-    int32_t tile_count, tile_capacity, block_count, block_capacity;
+    int32_t tile_count, tile_capacity, result_capacity, block_count, block_capacity, colour_capacity;
     solid_tile *tiles;
     solid_block *blocks;
     int32_t colour_start[28]; /* blocks of colour c are colour_blocks[colour_start[c] … colour_start[c+1]) */
     int colour_count;
-    int32_t *colour_blocks; // [block_capacity]
+    int32_t *colour_blocks; // [colour_capacity]
 
     int32_t slot_count, slot_capacity;
     int32_t (*slot_coordinate)[3]; // [slot_capacity], in blocks, sorted
@@ -119,7 +119,7 @@ struct solid {
     real *permute;                    // [count]
 
     solid_worker *workers; // [threads]
-    tile_result *tile_results;   // [tile_capacity]
+    tile_result *tile_results;   // [result_capacity]
     block_result *slot_results;  // [slot_capacity]
     double limits[EFFECT_LIMIT]; /* 1/Δt, from the current state */
     bool sorted;

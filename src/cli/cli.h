@@ -1,0 +1,48 @@
+/* The commands: parse, call, print. Each is one file and one row of the table in main.c. */
+#ifndef SUNDER_CLI_CLI_H
+#define SUNDER_CLI_CLI_H
+
+#include "base/status.h"
+#include "script/script.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+enum { CLI_SETTINGS = 64 };
+
+/* Options that several commands share. */
+typedef struct cli_scene_options {
+    const char *scene, *recipe;
+    int setting_count;
+    script_setting settings[CLI_SETTINGS];
+    char text[CLI_SETTINGS][256]; /* where the settings' strings live */
+} cli_scene_options;
+
+typedef int command_handler(int count, char **arguments);
+
+command_handler command_run, command_check, command_explain, command_runs, command_doctor, command_help;
+
+typedef struct command {
+    const char *name, *usage, *help;
+    command_handler *handler;
+} command;
+
+/* The table of commands and its length. */
+const command *command_table(int *count);
+
+/* Prints a report as one line on standard error, after "sunder: ", and returns its exit code. */
+int cli_fail(const report *r);
+
+/* The same for wrong arguments: what is wrong with `option`, and how the command is used. Returns 2. */
+int cli_usage(const char *name, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Prints all of a script's reports; returns the exit code of the first. */
+int cli_fail_script(const script_reports *reports);
+
+/* Adds a --set KEY=VALUE. Returns 0, or 2 with a message. */
+int cli_add_setting(cli_scene_options *o, const char *name, const char *text);
+
+/* Reads a whole number within [low, high]. Returns 0, or 2 with a message. */
+int cli_number(const char *name, const char *option, const char *text, long low, long high, long *value);
+
+#endif

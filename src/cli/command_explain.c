@@ -1,0 +1,155 @@
+/* sunder explain: the plan of a scene, before it costs anything. */
+#include "cli/cli.h"
+
+#include "base/json.h"
+#include "sim/simulation.h"
+
+#include <getopt.h>
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+#include <time.h>
+
+static const struct option long_options[] = {
+    {"set", required_argument, NULL, 's'},     {"recipe", required_argument, NULL, 'r'}, {"json", no_argument, NULL, 'j'},
+    {"precision", required_argument, NULL, 'p'}, {"threads", required_argument, NULL, 't'}, {NULL, 0, NULL, 0}};
+
+typedef struct cost {
+    double seconds_per_step, steps, seconds;
+} cost;
+
+/* The cost is measured, not guessed: a few steps of this very plan, then scaled to the scene's frames at its first step length. */
+static status measure_cost(simulation *s, const scene *scene_data, cost *c, report *r) {
+    const simulation_plan *plan = simulation_get_plan(s);
+    struct timespec start, now;
+    int steps = 0;
+    clock_gettime(CLOCK_MONOTONIC, &start);
+    double elapsed = 0;
+    while (steps < 50 && elapsed < 0.5) {
+        status code = simulation_step(s, plan->dt, r);
+        if (code != STATUS_OK) return code;
+        steps++;
+        clock_gettime(CLOCK_MONOTONIC, &now);
+        elapsed = (double)(now.tv_sec - start.tv_sec) + 1e-9 * (double)(now.tv_nsec - start.tv_nsec);
+    }
+    c->seconds_per_step = elapsed / steps;
+    c->steps = (double)scene_frames(scene_data) / scene_data->fps / plan->dt;
+    c->seconds = c->steps * c->seconds_per_step;
+    return STATUS_OK;
+}
+
+static void print_text(const simulation_plan *p, const scene *s, const cost *c) {
+    printf("%s\n\n", s->title[0] ? s->title : s->file);
+    printf("  particles  %lld  spacing %.4g  dx %.4g  f%d %s, %d threads\n", (long long)p->particles, p->spacing, p->dx, p->precision,
+           p->simd, p->threads);
+    printf("  bodies     ");
+    for (int b = 0; b < s->body_count; b++) {
+        char text[160];
+        shape_describe(s->bodies[b].shape, text, sizeof text);
+        printf("%s%s of %s\n", b ? "             " : "", text, s->materials[s->bodies[b].material].name);
+    }
+    puts("\n  effects");
+    for (int e = 0; e < p->effect_count; e++)
+        printf("    %-3s %-10s %s\n", p->mask >> e & 1 ? "on" : "off", p->effects[e]->name, p->effects[e]->doc);
+    puts("\n  fields, bytes a particle");
+    for (int i = 0; i < p->field_count; i++) printf("    %5.0f  %-22s %s\n", p->fields[i].bytes, p->fields[i].name, p->fields[i].effect);
+    printf("    %5.0f  with grid, padding and sort buffers\n", p->bytes_per_particle);
+    puts("\n  step limits");
+    for (int e = 0; e < p->effect_count; e++)
+        if (isfinite(p->limits[e])) printf("    %-10s %.4g\n", p->effects[e]->name, p->limits[e]);
+    printf("    dt         %.4g%s\n", p->dt, s->dt > 0 ? " (fixed by the scene)" : "");
+    printf("\n  cost       %lld frames, about %.0f steps of %.2f ms: %.0f s\n", (long long)scene_frames(s), c->steps, 1e3 * c->seconds_per_step,
+           c->seconds);
+}
+
+static void json_names(json_writer *w, const char *key, const simulation_plan *p, uint32_t mask) {
+    json_key(w, key);
+    json_array(w);
+    for (int e = 0; e < p->effect_count; e++)
+        if (mask >> e & 1) json_string(w, p->effects[e]->name);
+    json_array_end(w);
+}
+
+static void print_json(const simulation_plan *p, const scene *s, const cost *c) {
+    json_writer w;
+    report r;
+    json_begin(&w, 2);
+    json_object(&w);
+    json_member_string(&w, "scene", s->file);
+    json_member_string(&w, "title", s->title);
+    json_names(&w, "effects_on", p, p->mask);
+    json_names(&w, "effects_off", p, ~p->mask);
+    json_key(&w, "fields");
+    json_array(&w);
+    for (int i = 0; i < p->field_count; i++) {
+        json_object(&w);
+        json_member_string(&w, "name", p->fields[i].name);
+        json_member_number(&w, "bytes", p->fields[i].bytes);
+        json_member_string(&w, "effect", p->fields[i].effect);
+        json_object_end(&w);
+    }
+    json_array_end(&w);
+    json_member_number(&w, "bytes_per_particle", p->bytes_per_particle);
+    json_key(&w, "stages");
+    json_array(&w);
+    char stages[32][48];
+    int count = simulation_stages(p, stages, 32);
+    for (int i = 0; i < count; i++) json_string(&w, stages[i]);
+    json_array_end(&w);
+    json_key(&w, "step_limits");
+    json_object(&w);
+    for (int e = 0; e < p->effect_count; e++)
+        if (isfinite(p->limits[e])) json_member_number(&w, p->effects[e]->name, p->limits[e]);
+    json_object_end(&w);
+    json_member_number(&w, "dt", p->dt);
+    json_member_number(&w, "dx", p->dx);
+    json_member_integer(&w, "particles", p->particles);
+    json_member_number(&w, "predicted_steps", c->steps);
+    json_member_number(&w, "predicted_seconds", c->seconds);
+    json_object_end(&w);
+    if (json_finish(&w, &r) == STATUS_OK) puts(w.text);
+    json_free(&w);
+}
+
+static int explain(const char *path, const script_options *options, const simulation_options *engine, bool json) {
+    static script_reports reports;
+    script *s = NULL;
+    if (script_load(path, options, &s, &reports) != STATUS_OK) return cli_fail_script(&reports);
+    report r;
+    simulation *simulation_state = NULL;
+    cost c = {0};
+    status code = simulation_create(script_scene(s), engine, &simulation_state, &r);
+    if (code == STATUS_OK) code = measure_cost(simulation_state, script_scene(s), &c, &r);
+    if (code == STATUS_OK) (json ? print_json : print_text)(simulation_get_plan(simulation_state), script_scene(s), &c);
+    int exit_code = code == STATUS_OK ? 0 : cli_fail(&r);
+    simulation_destroy(simulation_state);
+    script_close(s);
+    return exit_code;
+}
+
+int command_explain(int count, char **arguments) {
+    static cli_scene_options o;
+    simulation_options engine = {.precision = 32, .simd = "auto"};
+    bool json = false;
+    int option, code = 0;
+    long value;
+    while ((option = getopt_long(count, arguments, "", long_options, NULL)) != -1) {
+        if (option == 's') code = cli_add_setting(&o, "explain", optarg);
+        else if (option == 'r') o.recipe = optarg;
+        else if (option == 'j') json = true;
+        else if (option == 'p' && strcmp(optarg, "f64") == 0) engine.precision = 64;
+        else if (option == 'p' && strcmp(optarg, "f32") == 0) engine.precision = 32;
+        else if (option == 'p') return cli_usage("explain", "--precision %s: expected f32 or f64", optarg);
+        else if (option == 't') {
+            code = cli_number("explain", "--threads", optarg, 1, 256, &value);
+            engine.threads = (int)value;
+        } else return cli_usage("explain", "wrong option");
+        if (code) return code;
+    }
+    if (optind != count - 1) return cli_usage("explain", "expected one scene");
+    script_options options = script_options_default();
+    options.recipe = o.recipe;
+    options.settings = o.settings;
+    options.setting_count = o.setting_count;
+    return explain(arguments[optind], &options, &engine, json);
+}

@@ -1,0 +1,205 @@
+/* sunder run: a session with a live screen, a progress line, or neither. */
+#include "cli/cli.h"
+
+#include "base/threads.h"
+#include "session/session.h"
+#include "tui/tui.h"
+
+#include <getopt.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct run_options {
+    cli_scene_options scene;
+    session_options session;
+    bool tui, json, quiet;
+    char command[1024];
+} run_options;
+
+enum { OPTION_SET = 256, OPTION_RECIPE, OPTION_FRAMES, OPTION_THREADS, OPTION_PRECISION, OPTION_OUT, OPTION_DB, OPTION_TUI,
+       OPTION_JSON, OPTION_QUIET, OPTION_RESUME, OPTION_SIMD, OPTION_CHECKPOINT_EVERY, OPTION_KEEP };
+
+static const struct option long_options[] = {
+    {"set", required_argument, NULL, OPTION_SET},
+    {"recipe", required_argument, NULL, OPTION_RECIPE},
+    {"frames", required_argument, NULL, OPTION_FRAMES},
+    {"threads", required_argument, NULL, OPTION_THREADS},
+    {"precision", required_argument, NULL, OPTION_PRECISION},
+    {"out", required_argument, NULL, OPTION_OUT},
+    {"db", required_argument, NULL, OPTION_DB},
+    {"tui", no_argument, NULL, OPTION_TUI},
+    {"json", no_argument, NULL, OPTION_JSON},
+    {"quiet", no_argument, NULL, OPTION_QUIET},
+    {"resume", required_argument, NULL, OPTION_RESUME},
+    {"simd", required_argument, NULL, OPTION_SIMD},
+    {"checkpoint-every", required_argument, NULL, OPTION_CHECKPOINT_EVERY},
+    {"keep", required_argument, NULL, OPTION_KEEP},
+    {NULL, 0, NULL, 0},
+};
+
+static int parse_precision(run_options *o, const char *text) {
+    if (strcmp(text, "f32") == 0) o->session.precision = 32;
+    else if (strcmp(text, "f64") == 0) o->session.precision = 64;
+    else return cli_usage("run", "--precision %s: expected f32 or f64", text);
+    return 0;
+}
+
+static int parse_keep(run_options *o, const char *text) {
+    long value;
+    if (strcmp(text, "all") == 0) {
+        o->session.keep = 0;
+        return 0;
+    }
+    int code = cli_number("run", "--keep", text, 1, 1000000, &value);
+    o->session.keep = (int)value;
+    return code;
+}
+
+static int parse_count(const char *option, long low, long high, long *value) {
+    return cli_number("run", option, optarg, low, high, value);
+}
+
+static int parse_option(run_options *o, int option) {
+    long value = 0;
+    int code = 0;
+    switch (option) {
+    case OPTION_SET: return cli_add_setting(&o->scene, "run", optarg);
+    case OPTION_RECIPE: o->scene.recipe = optarg; break;
+    case OPTION_FRAMES:
+        code = parse_count("--frames", 0, 1000000000, &value);
+        o->session.frames = value;
+        break;
+    case OPTION_THREADS:
+        code = parse_count("--threads", 1, 256, &value);
+        o->session.threads = (int)value;
+        break;
+    case OPTION_PRECISION: return parse_precision(o, optarg);
+    case OPTION_OUT: o->session.output = optarg; break;
+    case OPTION_DB: o->session.database = optarg; break;
+    case OPTION_TUI: o->tui = true; break;
+    case OPTION_JSON: o->json = true; break;
+    case OPTION_QUIET: o->quiet = true; break;
+    case OPTION_RESUME: o->session.resume = optarg; break;
+    case OPTION_SIMD: o->session.simd = optarg; break;
+    case OPTION_CHECKPOINT_EVERY:
+        code = parse_count("--checkpoint-every", 0, 1000000000, &value);
+        o->session.checkpoint_every = (int)value;
+        break;
+    case OPTION_KEEP: return parse_keep(o, optarg);
+    default: return cli_usage("run", "wrong option");
+    }
+    return code;
+}
+
+static int parse(run_options *o, int count, char **arguments) {
+    size_t used = 0;
+    for (int i = 0; i < count && used < sizeof o->command; i++)
+        used += (size_t)snprintf(o->command + used, sizeof o->command - used, "%s%s", i ? " " : "sunder ", arguments[i]);
+    int option;
+    while ((option = getopt_long(count, arguments, "", long_options, NULL)) != -1) {
+        int code = parse_option(o, option);
+        if (code) return code;
+    }
+    if (optind < count) o->scene.scene = arguments[optind++];
+    if (optind < count) return cli_usage("run", "one scene at a time, found '%s' too", arguments[optind]);
+    if (!o->scene.scene && !o->session.resume) return cli_usage("run", "expected a scene");
+    o->session.scene_path = o->scene.scene ? o->scene.scene : "";
+    o->session.command = o->command;
+    o->session.script.recipe = o->scene.recipe;
+    o->session.script.settings = o->scene.settings;
+    o->session.script.setting_count = o->scene.setting_count;
+    return 0;
+}
+
+/* ---- plain progress ---------------------------------------------------------------------------------------------- */
+
+static session *interrupted_session;
+static volatile sig_atomic_t interruptions;
+
+/* Both requests store to an atomic: safe in a handler. */
+static void on_interrupt(int signal_number) {
+    (void)signal_number;
+    if (interruptions++ == 0) session_stop(interrupted_session);
+    else session_abandon(interrupted_session);
+}
+
+static void catch_interrupts(session *s) {
+    interrupted_session = s;
+    struct sigaction action = {.sa_handler = on_interrupt};
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    sigaction(SIGHUP, &action, NULL);
+}
+
+static void format_duration(double seconds, char text[32]) {
+    if (seconds < 60) snprintf(text, 32, "%.0f s", seconds);
+    else if (seconds < 3600) snprintf(text, 32, "%d:%02d min", (int)seconds / 60, (int)seconds % 60);
+    else snprintf(text, 32, "%d:%02d h", (int)seconds / 3600, (int)seconds / 60 % 60);
+}
+
+static void print_progress(const session_snapshot *p, FILE *out, bool terminal) {
+    char left[32];
+    format_duration(p->seconds_left, left);
+    fprintf(out, "%sframe %lld/%lld  t %.3f  %.2f s/frame  left %s  kinetic %.3g  elastic %.3g  broken %.2f %%%s", terminal ? "\r\033[K" : "",
+            (long long)p->frame, (long long)p->frames, p->time, p->seconds_per_frame, left, p->now.kinetic,
+            p->now.elastic + p->now.fibre, 100 * p->now.broken_fraction, terminal ? "" : "\n");
+    fflush(out);
+}
+
+static void watch_plainly(session *s, FILE *out, bool quiet) {
+    session_snapshot snapshot = {0};
+    bool terminal = isatty(fileno(out));
+    int64_t shown = -1;
+    char message[sizeof snapshot.message] = "";
+    for (bool ended = false; !ended;) {
+        ended = session_wait(s, 0.1);
+        if (quiet || !session_poll(s, &snapshot)) continue;
+        if (snapshot.state != SESSION_ENDED && snapshot.message[0] && strcmp(message, snapshot.message) != 0) {
+            snprintf(message, sizeof message, "%s", snapshot.message);
+            fprintf(out, "%swarning: %s\n", terminal ? "\r\033[K" : "", message);
+        }
+        if (snapshot.frame != shown) print_progress(&snapshot, out, terminal);
+        shown = snapshot.frame;
+    }
+    if (!quiet && terminal) fputc('\n', out);
+    session_snapshot_free(&snapshot);
+}
+
+static void print_end(session *s, FILE *out) {
+    session_snapshot p = {0};
+    session_poll(s, &p);
+    fprintf(out, "%s: %lld frames, %lld steps of %lld particles in %.1f s (%.1f M particle-steps/s)\n  %s\n", p.run_id,
+            (long long)p.frame, (long long)p.step, (long long)p.particles, p.wall,
+            p.step_wall > 0 ? 1e-6 * (double)p.particles * (double)p.step / p.step_wall : 0.0, p.output);
+    session_snapshot_free(&p);
+}
+
+int command_run(int count, char **arguments) {
+    static run_options o;
+    o.session = session_options_default();
+    int code = parse(&o, count, arguments);
+    if (code) return code;
+    const char *why = NULL;
+    bool screen = o.tui && tui_possible(&why);
+    if (o.tui && !screen) fprintf(stderr, "sunder: the live view is off: %s\n", why);
+    static script_reports reports;
+    session *s = NULL;
+    if (session_start(&o.session, &s, &reports) != STATUS_OK) return cli_fail_script(&reports);
+    report r;
+    if (screen) {
+        tui_options look = tui_options_default();
+        (void)tui_watch(s, &look, &r);
+    } else {
+        catch_interrupts(s);
+        watch_plainly(s, o.json ? stderr : stdout, o.quiet);
+    }
+    session_wait(s, -1);
+    status outcome = session_outcome(s, &r);
+    if (outcome != STATUS_OK) (void)cli_fail(&r);
+    if (o.json && session_summary(s)) printf("%s\n", session_summary(s));
+    else if (!o.quiet) print_end(s, stdout);
+    session_destroy(s);
+    return status_exit_code(outcome);
+}

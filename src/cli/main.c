@@ -1,0 +1,102 @@
+/* sunder: finds the command and calls it. */
+#include "cli/cli.h"
+
+#include "base/names.h"
+
+#include <errno.h>
+#include <locale.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const command commands[] = {
+    {"run", "run SCENE [options]", "simulate a scene: frames, ledger row, live screen with --tui", command_run},
+    {"check", "check SCENE [--set KEY=VALUE]… [--recipe NAME] [--json]", "validate a scene without running it", command_check},
+    {"explain", "explain SCENE [--set KEY=VALUE]… [--json]", "show the plan: effects, fields, bytes, step limits, cost", command_explain},
+    {"runs", "runs list | show RUN | diff RUN RUN [--db FILE] [--json]", "ask the ledger about past runs", command_runs},
+    {"doctor", "doctor [--json]", "say what this machine and this build can do", command_doctor},
+    {"help", "help", "list the commands", command_help},
+};
+
+const command *command_table(int *count) {
+    *count = (int)(sizeof commands / sizeof *commands);
+    return commands;
+}
+
+static const command *find_command(const char *name) {
+    for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
+        if (strcmp(commands[i].name, name) == 0) return &commands[i];
+    return NULL;
+}
+
+int cli_fail(const report *r) {
+    char text[1600];
+    report_format(r, text, sizeof text);
+    fprintf(stderr, "sunder: %s\n", text);
+    return status_exit_code(r->code);
+}
+
+int cli_fail_script(const script_reports *reports) {
+    for (int i = 0; i < reports->count; i++) (void)cli_fail(&reports->items[i]);
+    return reports->count > 0 ? status_exit_code(reports->items[0].code) : 1;
+}
+
+int cli_usage(const char *name, const char *format, ...) {
+    const command *c = find_command(name);
+    va_list arguments;
+    va_start(arguments, format);
+    fprintf(stderr, "sunder %s: ", name);
+    vfprintf(stderr, format, arguments);
+    va_end(arguments);
+    fprintf(stderr, "\nusage: sunder %s\n", c ? c->usage : name);
+    return 2;
+}
+
+int cli_add_setting(cli_scene_options *o, const char *name, const char *text) {
+    if (o->setting_count == CLI_SETTINGS) return cli_usage(name, "--set: at most %d times", CLI_SETTINGS);
+    const char *equals = strchr(text, '=');
+    if (!equals || equals == text) return cli_usage(name, "--set %s: expected KEY=VALUE", text);
+    if (strlen(text) >= sizeof o->text[0]) return cli_usage(name, "--set: expected fewer than %zu characters", sizeof o->text[0]);
+    char *copy = o->text[o->setting_count];
+    strcpy(copy, text);
+    copy[equals - text] = '\0';
+    o->settings[o->setting_count++] = (script_setting){copy, copy + (equals - text) + 1};
+    return 0;
+}
+
+int cli_number(const char *name, const char *option, const char *text, long low, long high, long *value) {
+    char *end;
+    errno = 0;
+    *value = strtol(text, &end, 10);
+    if (end != text && *end == '\0' && errno == 0 && *value >= low && *value <= high) return 0;
+    return cli_usage(name, "%s %s: expected a whole number from %ld to %ld", option, text, low, high);
+}
+
+int command_help(int count, char **arguments) {
+    (void)count, (void)arguments;
+    puts("sunder: a terminal workbench for tearing things\n");
+    for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
+        printf("  sunder %-58s\n      %s\n", commands[i].usage, commands[i].help);
+    puts("\nExit codes: 0 done; 1 the simulation failed; 2 the input is wrong; 130 interrupted.");
+    return 0;
+}
+
+static int unknown_command(const char *name) {
+    const char *names[sizeof commands / sizeof *commands];
+    for (size_t i = 0; i < sizeof commands / sizeof *commands; i++) names[i] = commands[i].name;
+    const char *nearest = name_nearest(name, names, (int)(sizeof names / sizeof *names));
+    report r;
+    report_input(&r, NULL, 0, name, "a command (sunder help lists them)", "none of that name", nearest);
+    return cli_fail(&r);
+}
+
+int main(int count, char **arguments) {
+    setlocale(LC_ALL, "");
+    setlocale(LC_NUMERIC, "C"); /* numbers in files and JSON have a point, wherever we are */
+    if (count < 2) return command_help(0, NULL);
+    const char *name = arguments[1];
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) return command_help(0, NULL);
+    if (strcmp(name, "--version") == 0) return puts("sunder " SUNDER_VERSION) < 0;
+    const command *c = find_command(name);
+    return c ? c->handler(count - 1, arguments + 1) : unknown_command(name);
+}

@@ -1,0 +1,55 @@
+/* Scenes built in C, for tests that need no Lua. */
+#ifndef SUNDER_TESTS_SOLID_SCENE_H
+#define SUNDER_TESTS_SOLID_SCENE_H
+
+#include "sim/simulation.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* A scene with one material of the given elasticity and one body; no gravity, no boundaries. */
+static inline scene *test_scene(const shape *(*make)(arena *), double E, double nu, double density) {
+    scene *s = scene_create();
+    int count;
+    const effect *const *effects = effect_catalogue(&count);
+    snprintf(s->file, sizeof s->file, "test");
+    s->fps = 100;
+    s->material_count = 1;
+    scene_material *m = &s->materials[0];
+    snprintf(m->name, sizeof m->name, "block");
+    m->density = density;
+    for (int e = 0; e < count; e++) effect_values_default(effects[e], &m->effects[e]);
+    effect_values *elastic = &m->effects[effect_index("elastic")];
+    elastic->on = true;
+    elastic->value[0][0] = E, elastic->given[0] = true;
+    elastic->value[1][0] = nu, elastic->given[1] = true;
+    s->body_count = 1;
+    s->bodies[0] = (scene_body){.name = "block", .shape = make(s->memory)};
+    return s;
+}
+
+/* Switches an effect on and gives it a value by key. */
+static inline void test_set(scene *s, const char *effect_name, const char *key, double value) {
+    int count, e = effect_index(effect_name);
+    const effect *table = effect_catalogue(&count)[e];
+    effect_values *v = &s->materials[0].effects[e];
+    v->on = true;
+    if (!key) return;
+    int p = effect_parameter(table, key);
+    v->value[p][0] = value;
+    v->given[p] = true;
+}
+
+static inline simulation *test_simulation(scene *s, int precision, const char *simd, int threads) {
+    report r;
+    simulation *out = NULL;
+    simulation_options o = {.threads = threads, .precision = precision, .simd = simd};
+    if (scene_validate(s, &r) == STATUS_OK && simulation_create(s, &o, &out, &r) == STATUS_OK) return out;
+    char text[1024];
+    report_format(&r, text, sizeof text);
+    printf("  %s\n", text);
+    return NULL;
+}
+
+#endif

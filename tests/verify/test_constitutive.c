@@ -1,0 +1,273 @@
+/* Elasticity at one material point (METHOD.md §1, §2): the engine's own stages against closed forms.
+ *
+ * - P(F) against central differences of Ψ, f64, h = 3e-6: 1e-8 of |P| where ℓ ≥ 0.05, 1e-6 elsewhere. The stage gives
+ *   τ = P Fᵀ, so the check compares τ with (∂Ψ/∂F) Fᵀ, which needs no inverse and holds for singular F too.
+ * - Objectivity: Ψ(RF) = Ψ(F) to 1e-12 for 10⁴ rotations.
+ * - The closed form equals the paper's QR form to 1e-12 for 10⁶ random F, inverted and near-singular ones among them.
+ * - g(0) = 1, g(1) = r, and compression (J < 1) leaves Ψλ undegraded. */
+#include "check.h"
+#include "verify/solid_point.h"
+
+#include "base/random.h"
+
+static double uniform(uint64_t stream, uint64_t i) {
+    return 2 * random_unit(20, stream, i) - 1;
+}
+
+static void random_matrix(uint64_t i, double scale, double F[9]) {
+    for (int c = 0; c < 9; c++) F[c] = (c % 4 == 0 && scale < 1) + scale * uniform((uint64_t)c, i);
+}
+
+static double determinant(const double F[9]) {
+    return F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+}
+
+static double norm(const double *v, int n) {
+    double sum = 0;
+    for (int i = 0; i < n; i++) sum += v[i] * v[i];
+    return sqrt(sum);
+}
+
+/* A rotation from a random unit quaternion. */
+static void random_rotation(uint64_t i, double R[9]) {
+    double q[4];
+    do {
+        for (int c = 0; c < 4; c++) q[c] = uniform(100 + (uint64_t)c, i);
+        i += 1000003;
+    } while (norm(q, 4) < 0.1);
+    double n = norm(q, 4);
+    for (int c = 0; c < 4; c++) q[c] /= n;
+    double w = q[0], x = q[1], y = q[2], z = q[3];
+    const double r[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z), 1 - 2 * (x * x + z * z),
+                         2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
+    memcpy(R, r, sizeof r);
+}
+
+static void multiply(const double A[9], const double B[9], double C[9]) {
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            C[3 * i + j] = 0;
+            for (int k = 0; k < 3; k++) C[3 * i + j] += A[3 * i + k] * B[3 * k + j];
+        }
+}
+
+static material_point *fibred_point(void) {
+    material_point *p = point_create(1u << EFFECT_elastic | 1u << EFFECT_fibres);
+    p->values[EFFECT_elastic].value[0][0] = 3;
+    p->values[EFFECT_elastic].value[1][0] = 0.3;
+    p->values[EFFECT_fibres].value[0][0] = 2;
+    p->values[EFFECT_fibres].value[1][0] = 0.7;
+    return p;
+}
+
+/* Turns the two fibre families by a rotation, so that no axis is special. */
+static void turn_fibres(material_point *p, const double R[9]) {
+    const double a1[3] = {R[0], R[3], R[6]}, a2[3] = {R[1], R[4], R[7]};
+    point_set(p, 7, a1);
+    point_set(p, 8, a2);
+}
+
+static void stress_is_the_gradient_of_energy(void) {
+    material_point *p = fibred_point();
+    double worst_long = 0, worst_short = 0, h = 3e-6;
+    int short_ones = 0;
+    for (uint64_t i = 0; i < 4000; i++) {
+        double R[9], F[9], P[9], tau[6];
+        random_rotation(i, R);
+        turn_fibres(p, R);
+        random_matrix(i, i % 2 ? 1.5 : 0.4, F);
+        if (i % 5 == 0) /* a fibre squeezed to a few hundredths */
+            for (int row = 0; row < 3; row++) {
+                double along = F[3 * row] * R[0] + F[3 * row + 1] * R[3] + F[3 * row + 2] * R[6];
+                for (int c = 0; c < 3; c++) F[3 * row + c] -= (1 - 0.03) * along * R[3 * c];
+            }
+        /* Below 1e-3 the differences' own error takes over. */
+        double f1[3] = {F[0] * R[0] + F[1] * R[3] + F[2] * R[6], F[3] * R[0] + F[4] * R[3] + F[5] * R[6], F[6] * R[0] + F[7] * R[3] + F[8] * R[6]};
+        double f2[3] = {F[0] * R[1] + F[1] * R[4] + F[2] * R[7], F[3] * R[1] + F[4] * R[4] + F[5] * R[7], F[6] * R[1] + F[7] * R[4] + F[8] * R[7]};
+        double shortest = fmin(norm(f1, 3), norm(f2, 3));
+        if (shortest < 1e-3) continue;
+        for (int c = 0; c < 9; c++) {
+            double G[9];
+            memcpy(G, F, sizeof G);
+            G[c] = F[c] + h;
+            point_set(p, FIELD_DEFORMATION, G);
+            double up = point_energy(p);
+            G[c] = F[c] - h;
+            point_set(p, FIELD_DEFORMATION, G);
+            P[c] = (up - point_energy(p)) / (2 * h);
+        }
+        point_set(p, FIELD_DEFORMATION, F);
+        point_stress(p, tau);
+        const double full[9] = {tau[0], tau[3], tau[5], tau[3], tau[1], tau[4], tau[5], tau[4], tau[2]};
+        double error = 0, Ft[9] = {F[0], F[3], F[6], F[1], F[4], F[7], F[2], F[5], F[8]}, PFt[9];
+        multiply(P, Ft, PFt);
+        for (int c = 0; c < 9; c++) error += (PFt[c] - full[c]) * (PFt[c] - full[c]);
+        error = sqrt(error) / (norm(P, 9) * norm(F, 9) + 1e-3);
+        if (shortest >= 0.05) worst_long = fmax(worst_long, error);
+        else worst_short = fmax(worst_short, error), short_ones++;
+    }
+    printf("  worst relative difference %.2e (fibres over 0.05), %.2e (shorter)\n", worst_long, worst_short);
+    CHECK(worst_long < 1e-8);
+    CHECK(worst_short < 1e-6 && short_ones > 300);
+    free(p);
+}
+
+static void energy_is_objective(void) {
+    material_point *p = fibred_point();
+    double worst = 0;
+    for (uint64_t i = 0; i < 10000; i++) {
+        double R[9], F[9], RF[9];
+        random_rotation(i, R);
+        random_matrix(i, 1.5, F);
+        point_set(p, FIELD_DEFORMATION, F);
+        double before = point_energy(p);
+        multiply(R, F, RF);
+        point_set(p, FIELD_DEFORMATION, RF);
+        worst = fmax(worst, fabs(point_energy(p) - before) / (fabs(before) + 1));
+    }
+    printf("  worst relative difference %.2e\n", worst);
+    CHECK(worst < 1e-12);
+    free(p);
+}
+
+/* The paper's form: F B = QR by Gram–Schmidt, in a basis B whose first axis is a1 and second a2; Ψ from the entries of R alone. */
+static double qr_energy(const double F[9], const double B[9], double mu, double lambda, double kx, double ky) {
+    double M[9], r[3][3] = {{0}}, q[3][3];
+    multiply(F, B, M);
+    for (int j = 0; j < 3; j++) {
+        double v[3] = {M[j], M[3 + j], M[6 + j]};
+        for (int pass = 0; pass < 2; pass++) /* twice: orthogonal to round-off also for nearly singular F */
+            for (int k = 0; k < j; k++) {
+                double dot = q[k][0] * v[0] + q[k][1] * v[1] + q[k][2] * v[2];
+                r[k][j] += dot;
+                for (int c = 0; c < 3; c++) v[c] -= dot * q[k][c];
+            }
+        r[j][j] = norm(v, 3);
+        for (int c = 0; c < 3; c++) q[j][c] = v[c] / r[j][j];
+    }
+    /* The third axis completes a right-handed frame: the sign of the determinant goes to r33. */
+    const double Q[9] = {q[0][0], q[1][0], q[2][0], q[0][1], q[1][1], q[2][1], q[0][2], q[1][2], q[2][2]};
+    if (determinant(Q) < 0) r[2][2] = -r[2][2];
+    double square = 0, J = r[0][0] * r[1][1] * r[2][2];
+    for (int i = 0; i < 3; i++)
+        for (int j = i; j < 3; j++) square += r[i][j] * r[i][j];
+    double l1 = r[0][0], l2 = sqrt(r[0][1] * r[0][1] + r[1][1] * r[1][1]);
+    return 0.5 * mu * (square - 3) - mu * (J - 1) + 0.5 * lambda * (J - 1) * (J - 1) + 0.5 * kx * (l1 - 1) * (l1 - 1) +
+           0.5 * ky * (l2 - 1) * (l2 - 1);
+}
+
+static void closed_form_is_the_qr_form(void) {
+    material_point *p = fibred_point();
+    double E = 3, nu = 0.3, mu = E / (2 * (1 + nu)), lambda = E * nu / ((1 + nu) * (1 - 2 * nu)) + mu, worst = 0;
+    int inverted = 0, singular = 0;
+    for (uint64_t i = 0; i < 1000000; i++) {
+        double B[9], F[9];
+        random_rotation(i % 512, B);
+        random_matrix(i, i % 3 ? 1.5 : 0.5, F);
+        if (i % 7 == 0) /* nearly singular: the third row almost in the plane of the others */
+            for (int c = 0; c < 3; c++) F[6 + c] = F[c] + F[3 + c] + 1e-6 * F[6 + c];
+        inverted += determinant(F) < 0;
+        singular += fabs(determinant(F)) < 1e-5;
+        turn_fibres(p, B);
+        point_set(p, FIELD_DEFORMATION, F);
+        double energy = point_energy(p), reference = qr_energy(F, B, mu, lambda, mu * 2, mu * 0.7);
+        worst = fmax(worst, fabs(energy - reference) / (1 + fabs(reference)));
+    }
+    printf("  worst relative difference %.2e over 10^6 F, %d inverted, %d nearly singular\n", worst, inverted, singular);
+    CHECK(worst < 1e-12);
+    CHECK(inverted > 100000 && singular > 100000);
+    free(p);
+}
+
+/* The stress at rest is nothing; the linear response of the default (consistent) λ is Hooke's. */
+static void small_strain_is_hooke(void) {
+    material_point *p = point_create(1u << EFFECT_elastic);
+    double E = 7, nu = 0.31, e = 1e-7, tau[6];
+    p->values[EFFECT_elastic].value[0][0] = E;
+    p->values[EFFECT_elastic].value[1][0] = nu;
+    point_stress(p, tau);
+    CHECK(norm(tau, 6) < 1e-14);
+    double mu = E / (2 * (1 + nu)), lambda = E * nu / ((1 + nu) * (1 - 2 * nu));
+    const double F[9] = {1 + e, 0, 0, 0, 1, 0, 0, 0, 1};
+    point_set(p, FIELD_DEFORMATION, F);
+    point_stress(p, tau);
+    CHECK_NEAR(tau[0] / e, lambda + 2 * mu, 1e-5);
+    CHECK_NEAR(tau[1] / e, lambda, 1e-5);
+    const double S[9] = {1, e, 0, 0, 1, 0, 0, 0, 1};
+    point_set(p, FIELD_DEFORMATION, S);
+    point_stress(p, tau);
+    CHECK_NEAR(tau[3] / e, mu, 1e-5);
+    free(p);
+}
+
+static void damage_degrades_tension_only(void) {
+    material_point *p = point_create(1u << EFFECT_elastic | 1u << EFFECT_damage);
+    double one = 1, zero = 0, r = 0.013, whole[6], broken[6];
+    p->values[EFFECT_damage].value[0][0] = 1;
+    p->values[EFFECT_damage].value[5][0] = r;
+    const double stretched[9] = {1.2, 0.1, 0, 0, 1.1, 0, 0, 0, 1.05}, squeezed[9] = {0.8, 0, 0, 0, 0.8, 0, 0, 0, 0.8};
+    point_set(p, FIELD_DEFORMATION, stretched);
+    point_set(p, 5, &zero);
+    point_stress(p, whole);
+    point_set(p, 5, &one);
+    point_stress(p, broken);
+    for (int c = 0; c < 6; c++) CHECK_NEAR(broken[c], r * whole[c], 1e-9 * norm(whole, 6));
+    /* Uniform squeeze s: τ = g μ (s² − J) + λ (J − 1) J; the second term is whole. */
+    point_set(p, FIELD_DEFORMATION, squeezed);
+    point_stress(p, broken);
+    double E = p->values[EFFECT_elastic].value[0][0], nu = p->values[EFFECT_elastic].value[1][0], J = 0.512;
+    double mu = E / (2 * (1 + nu)), lambda = E * nu / ((1 + nu) * (1 - 2 * nu)) + mu;
+    CHECK_NEAR(broken[0], r * mu * (0.64 - J) + lambda * (J - 1) * J, 1e-9 * E);
+    free(p);
+}
+
+/* ρ0 c² of the stage bounds the acoustic tensor, by finite differences of P along rank-one directions (METHOD.md §3). */
+static void wave_modulus_bounds_the_acoustic_tensor(void) {
+    material_point *p = fibred_point();
+    double worst = 0, h = 1e-5;
+    for (uint64_t i = 0; i < 3000; i++) {
+        double R[9], F[9], N[9], n[3];
+        random_rotation(i, R);
+        turn_fibres(p, R);
+        random_matrix(i, 0.6, F);
+        if (determinant(F) < 0.05) continue;
+        random_rotation(i + 77777, N);
+        for (int c = 0; c < 3; c++) n[c] = N[c];
+        /* Second derivative of Ψ along F + s n⊗(Fᵀn'): longitudinal and transverse polarisations of a wave along n. */
+        for (int polarisation = 0; polarisation < 3; polarisation++) {
+            double D[9], G[9], energy[3];
+            for (int a = 0; a < 3; a++)
+                for (int b = 0; b < 3; b++)
+                    D[3 * a + b] = N[3 * polarisation + a] * (n[0] * F[b] + n[1] * F[3 + b] + n[2] * F[6 + b]);
+            for (int k = 0; k < 3; k++) {
+                for (int c = 0; c < 9; c++) G[c] = F[c] + (k - 1) * h * D[c];
+                point_set(p, FIELD_DEFORMATION, G);
+                energy[k] = point_energy(p);
+            }
+            double curvature = (energy[0] - 2 * energy[1] + energy[2]) / (h * h);
+            real constants[CONSTANTS];
+            point_set(p, FIELD_DEFORMATION, F);
+            memset(p->scratch.wave_modulus, 0, sizeof p->scratch.wave_modulus);
+            for (int lane = 0; lane < PACK; lane++) p->scratch.degradation[lane] = 1;
+            tile_work w = point_work(p, &SOLID_EFFECT(elastic), EFFECT_elastic, constants, 0);
+            SOLID_EFFECT(elastic).stages->wave(&w);
+            w = point_work(p, &SOLID_EFFECT(fibres), EFFECT_fibres, constants, 0);
+            SOLID_EFFECT(fibres).stages->wave(&w);
+            worst = fmax(worst, curvature / p->scratch.wave_modulus[0]);
+        }
+    }
+    printf("  largest curvature over bound %.3f\n", worst);
+    CHECK(worst < 1.001);
+    CHECK(worst > 0.3); /* a bound that is many times too large would waste steps */
+    free(p);
+}
+
+int main(void) {
+    RUN(stress_is_the_gradient_of_energy);
+    RUN(energy_is_objective);
+    RUN(closed_form_is_the_qr_form);
+    RUN(small_strain_is_hooke);
+    RUN(damage_degrades_tension_only);
+    RUN(wave_modulus_bounds_the_acoustic_tensor);
+    return check_finish();
+}

@@ -14,6 +14,7 @@ static const command commands[] = {
     {"check", "check SCENE [--set KEY=VALUE]… [--recipe NAME] [--json]", "validate a scene without running it", command_check},
     {"explain", "explain SCENE [--set KEY=VALUE]… [--json]", "show the plan: effects, fields, bytes, step limits, cost", command_explain},
     {"runs", "runs list | show RUN | diff RUN RUN [--db FILE] [--json]", "ask the ledger about past runs", command_runs},
+    {"render", "render RUN [--frame N] [--out FILE.png] [--width N] [--height N] [--yaw D] [--pitch D]", "draw a frame", command_render},
     {"doctor", "doctor [--json]", "say what this machine and this build can do", command_doctor},
     {"help", "help", "list the commands", command_help},
 };
@@ -76,7 +77,7 @@ int command_help(int count, char **arguments) {
     (void)count, (void)arguments;
     puts("sunder: a terminal workbench for tearing things\n");
     for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
-        printf("  sunder %-58s\n      %s\n", commands[i].usage, commands[i].help);
+        printf("  sunder %s\n      %s\n", commands[i].usage, commands[i].help);
     puts("\nExit codes: 0 done; 1 the simulation failed; 2 the input is wrong; 130 interrupted.");
     return 0;
 }

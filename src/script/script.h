@@ -19,6 +19,7 @@ typedef struct script_options {
     const char *recipe;             /* --recipe NAME: replaces every body's material, NULL for none */
     const script_setting *settings; /* [setting_count] */
     int setting_count;
+    const char *resolved;           /* a text of script_resolved to pin parameters with, weaker than settings; NULL for none */
     double time_limit;              /* seconds of processor time; 5 */
     size_t memory_limit;            /* bytes; 512 MiB */
 } script_options;
@@ -49,8 +50,11 @@ typedef struct script_source {
 int script_source_count(const script *s);
 script_source script_source_at(const script *s, int index);
 
-/* A Lua text that, loaded as a scene's overrides, pins every resolved parameter ("return { pull = 0.1, … }"); owned by `s`. */
+/* A Lua text that, given as script_options.resolved, pins every resolved parameter ("return { pull = 0.1, … }"); owned by `s`. */
 const char *script_resolved(script *s);
+
+/* What the script printed, at most 8 KiB; owned by `s`. */
+const char *script_log(const script *s);
 
 void script_close(script *s);
 

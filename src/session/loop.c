@@ -126,6 +126,7 @@ static status run_frames(session *s, report *r) {
         code = simulation_advance(s->simulation, &s->abandon, r);
         double seconds = session_clock() - start;
         s->step_wall += seconds;
+        if (s->last_frame_wall == 0) s->last_frame_wall = seconds; /* the first frame's, until its writing is known too */
         if (code == STATUS_OK) code = settle_frame(s, seconds, true, r);
         s->last_frame_wall = session_clock() - start;
     }

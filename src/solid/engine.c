@@ -196,7 +196,7 @@ static double bytes_per_particle(const solid *s) {
     double bytes = (double)s->pack_capacity * PACK * sizeof *s->id;
     for (int i = 0; i < s->field_count; i++) bytes += (double)s->pack_capacity * s->fields[i].components * PACK * sizeof(real);
     double sort_bytes = (double)s->count * (2 * sizeof *s->sort_keys + sizeof *s->permute);
-    double node_reals = NODE + (s->damage_grid ? DAMAGE_NODE : 0);
+    double node_reals = NODE + (s->damage_grid ? DAMAGE_NODE : 0) + (s->old_grid ? NODE : 0);
     double grid_bytes = (double)s->slot_capacity * BLOCK_NODES * node_reals * sizeof(real);
     double tables = (double)s->tile_capacity * (sizeof *s->tiles + sizeof *s->tile_results) +
                     (double)s->block_capacity * sizeof *s->blocks + (double)s->hash_capacity * 12;

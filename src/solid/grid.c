@@ -67,8 +67,11 @@ static status reserve_slots(solid *s, int32_t slots, report *r) {
     s->grid = memory_allocate_array(fresh, node_bytes);
     s->slot_results = memory_allocate_array(fresh, sizeof *s->slot_results);
     if (s->transfers_damage) s->damage_grid = memory_allocate_array(fresh, damage_bytes);
+    bool flip = s->definition.transfer == TRANSFER_FLIP;
+    if (flip) s->old_grid = memory_allocate_array(fresh, node_bytes);
     s->slot_capacity = capacity;
-    if (!s->slot_coordinate || !s->grid || !s->slot_results || (s->transfers_damage && !s->damage_grid))
+    if (!s->slot_coordinate || !s->grid || !s->slot_results || (s->transfers_damage && !s->damage_grid) ||
+        (flip && !s->old_grid))
         return report_set(r, STATUS_SYSTEM, "out of memory for %d grid blocks", capacity);
     return STATUS_OK;
 }
@@ -77,9 +80,10 @@ void grid_free(solid *s) {
     size_t slots = (size_t)s->slot_capacity;
     memory_free(s->slot_coordinate, s->slot_coordinate ? slots * sizeof *s->slot_coordinate : 0);
     memory_free(s->grid, s->grid ? slots * BLOCK_NODES * NODE * sizeof(real) : 0);
+    memory_free(s->old_grid, s->old_grid ? slots * BLOCK_NODES * NODE * sizeof(real) : 0);
     memory_free(s->slot_results, s->slot_results ? slots * sizeof *s->slot_results : 0);
     memory_free(s->damage_grid, s->damage_grid ? slots * BLOCK_NODES * DAMAGE_NODE * sizeof(real) : 0);
-    s->slot_coordinate = NULL, s->grid = NULL, s->slot_results = NULL, s->damage_grid = NULL;
+    s->slot_coordinate = NULL, s->grid = NULL, s->old_grid = NULL, s->slot_results = NULL, s->damage_grid = NULL;
     s->slot_capacity = 0;
 }
 
@@ -138,16 +142,21 @@ typedef struct update_context {
     real dt;
 } update_context;
 
+static void to_velocity(real *nodes) {
+    for (int n = 0; n < BLOCK_NODES; n++) {
+        real mass = nodes[n * NODE + 3], inverse = mass > 0 ? 1 / mass : 0;
+        for (int c = 0; c < 3; c++) nodes[n * NODE + c] *= inverse;
+    }
+}
+
 /* Momentum becomes velocity, Σ w d becomes d; then the effects' grid stages in their order. */
 static void update_slot(void *context, int64_t slot, int worker) {
     (void)worker;
     update_context *u = context;
     solid *s = u->state;
     real *nodes = s->grid + slot * BLOCK_NODES * NODE;
-    for (int n = 0; n < BLOCK_NODES; n++) {
-        real mass = nodes[n * NODE + 3], inverse = mass > 0 ? 1 / mass : 0;
-        for (int c = 0; c < 3; c++) nodes[n * NODE + c] *= inverse;
-    }
+    to_velocity(nodes);
+    if (s->old_grid) to_velocity(s->old_grid + slot * BLOCK_NODES * NODE);
     if (s->transfers_damage) {
         real *d = s->damage_grid + slot * BLOCK_NODES * DAMAGE_NODE, *weight = d + BLOCK_NODES;
         for (int n = 0; n < BLOCK_NODES; n++) d[n] = weight[n] > 0 ? d[n] / weight[n] : 0;

@@ -61,12 +61,14 @@ typedef struct tile_scratch {
     real degradation[TILE_PACKS * PACK];      // g(d); 1 where nothing degrades
     real laplacian[TILE_PACKS * PACK];        // Δd, per length²
     real wave_modulus[TILE_PACKS * PACK];     // ρ0 c², summed over effects
+    real old_velocity[TILE_PACKS * 3 * PACK]; // FLIP: the grid's velocity before forces, at the particles
     real records[TILE_PARTICLES * 32];        // per particle, for scatter and gather
 } tile_scratch;
 
 typedef struct solid_worker {
     tile_scratch tile;
     real window[WINDOW_NODES * NODE];
+    real old_window[WINDOW_NODES * NODE]; // FLIP only
     real damage_window[WINDOW_NODES * DAMAGE_NODE];
 } solid_worker;
 
@@ -107,6 +109,7 @@ struct solid {
     int32_t slot_count, slot_capacity;
     int32_t (*slot_coordinate)[3]; // [slot_capacity], in blocks, sorted
     real *grid;                    // [slot_capacity][BLOCK_NODES][NODE]
+    real *old_grid;                // the same before forces, NULL unless the transfer is FLIP
     real *damage_grid;             // [slot_capacity][BLOCK_NODES][DAMAGE_NODE], NULL unless damage is on
 
     /* sorting: kept between sorts, grown when needed */

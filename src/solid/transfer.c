@@ -94,12 +94,12 @@ typedef struct transfer_context {
     real dt;
 } transfer_context;
 
-/* Momentum records: base value at the kernel's first node and its slope along each axis. */
-SIMD_INLINE void momentum_records(const tile_work *w, kernel_kind kernel, real density) {
+/* Momentum records: base value at the kernel's first node and its slope along each axis; `forces` 0 leaves the stress out. */
+SIMD_INLINE void momentum_records(const tile_work *w, kernel_kind kernel, real density, real forces) {
     const solid *s = w->state;
     const solid_definition *d = &s->definition;
     real dx = (real)d->dx, inverse_d = (real)((kernel == KERNEL_QUADRATIC ? 4.0 : 3.0) / (d->dx * d->dx));
-    real force_scale = -w->dt * inverse_d * dx;
+    real force_scale = -forces * w->dt * inverse_d * dx;
     for (int k = 0; k < w->tile->pack_count; k++)
         for (int part = 0; part < PACK_PARTS; part++) {
             int32_t pack = w->tile->first_pack + k;
@@ -263,18 +263,26 @@ SIMD_INLINE void block_to_grid(transfer_context *t, int32_t block_index, int wor
     const solid_block *b = &s->blocks[block_index];
     solid_worker *own = &s->workers[worker];
     bool wide = kernel == KERNEL_CUBIC || (damage && laplacian == KERNEL_CUBIC);
+    int nodes = kernel == KERNEL_QUADRATIC ? 3 : 4;
     memset(own->window, 0, sizeof own->window);
+    if (s->old_grid) memset(own->old_window, 0, sizeof own->old_window);
     if (damage) memset(own->damage_window, 0, sizeof own->damage_window);
     for (int32_t i = b->first_tile; i < b->first_tile + b->tile_count; i++) {
         tile_work w = begin_tile(s, i, worker, t->dt);
         fill(w.scratch->kirchhoff, w.tile->pack_count * 6 * PACK, 0);
         CALL_STAGE(&w, stress);
-        momentum_records(&w, kernel, (real)s->definition.materials[w.tile->material].density);
-        scatter_momentum(&w, kernel == KERNEL_QUADRATIC ? 3 : 4, own->window);
+        real density = (real)s->definition.materials[w.tile->material].density;
+        if (s->old_grid) {
+            momentum_records(&w, kernel, density, 0);
+            scatter_momentum(&w, nodes, own->old_window);
+        }
+        momentum_records(&w, kernel, density, 1);
+        scatter_momentum(&w, nodes, own->window);
         if (damage && s->material_mask[w.tile->material] >> EFFECT_damage & 1)
             scatter_damage(&w, laplacian, laplacian == KERNEL_QUADRATIC ? 3 : 4, own->damage_window);
     }
     exchange_window(b, own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, true);
+    if (s->old_grid) exchange_window(b, own->old_window, s->old_grid, NODE, BLOCK_NODES * NODE, wide, true);
     if (!damage) return;
     exchange_window(b, own->damage_window, s->damage_grid, 1, BLOCK_NODES * DAMAGE_NODE, wide, true);
     exchange_window(b, own->damage_window + WINDOW_NODES, s->damage_grid + BLOCK_NODES, 1, BLOCK_NODES * DAMAGE_NODE, wide, true);
@@ -330,6 +338,30 @@ SIMD_INLINE void gather_particle(real *r, int nodes, const node_row node_offset,
     row_fold(row_fma(along_x, weight_z, zero), r + G2P_OUT + 4);
     row_fold(row_fma(along_y, weight_z, zero), r + G2P_OUT + 8);
     row_fold(row_fma(weighted, distance_z, zero), r + G2P_OUT + 12);
+}
+
+SIMD_INLINE void gather_tile(const tile_work *w, kernel_kind kernel, const node_row node_offset, const real *window) {
+    for (int p = 0; p < w->tile->count; p++)
+        gather_particle(w->scratch->records + p * RECORD, kernel == KERNEL_QUADRATIC ? 3 : 4, node_offset, window);
+    for (int p = w->tile->count; p < w->tile->pack_count * PACK; p++)
+        memset(w->scratch->records + p * RECORD + G2P_OUT, 0, 16 * sizeof(real));
+}
+
+SIMD_INLINE void keep_old_velocity(const tile_work *w) {
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++)
+            for (int c = 0; c < 3; c++)
+                vec_store(scratch_at(w->scratch->old_velocity, 3, k, c, part),
+                          record_get(w->scratch->records, k * PACK + part * VEC_LANES, G2P_OUT + c));
+}
+
+/* FLIP: the particle's own velocity plus what the grid gained, blended with the grid's by the ratio. */
+SIMD_INLINE vec3v flip_velocity(const tile_work *w, int k, int part, vec3v grid) {
+    real ratio = (real)w->state->definition.transfer_ratio;
+    vec3v own = vec3v_load(&w->state->fields[FIELD_VELOCITY], w->tile->first_pack + k, part);
+    vec old[3];
+    for (int c = 0; c < 3; c++) old[c] = vec_load(scratch_at(w->scratch->old_velocity, 3, k, c, part));
+    return (vec3v){grid.x + ratio * (own.x - old[0]), grid.y + ratio * (own.y - old[1]), grid.z + ratio * (own.z - old[2])};
 }
 
 /* Δd at each particle from the nodal damage: N'' of one axis times N of the others. */
@@ -428,7 +460,7 @@ SIMD_INLINE void advance_particles(const tile_work *w, kernel_kind kernel) {
                       (x.z >= (real)b->base_low[2] + shift) & (x.z < (real)(b->base_high[2] + 1) + shift);
             mat3v_store(&s->fields[FIELD_DEFORMATION], pack, part, F);
             mat3v_store(&s->fields[FIELD_AFFINE], pack, part, project_affine(d, L));
-            vec3v_store(&s->fields[FIELD_VELOCITY], pack, part, v);
+            vec3v_store(&s->fields[FIELD_VELOCITY], pack, part, s->old_grid ? flip_velocity(w, k, part, v) : v);
             vec3v_store(&s->fields[FIELD_POSITION], pack, part, x);
         }
     w->result->unsorted = vec_any(~inside);
@@ -463,6 +495,7 @@ SIMD_INLINE void block_to_particles(transfer_context *t, int32_t block_index, in
     const real offsets[4] = {0, 1, 2, 3};
     node_row node_offset = row_spread(offsets);
     exchange_window(b, own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, false);
+    if (s->old_grid) exchange_window(b, own->old_window, s->old_grid, NODE, BLOCK_NODES * NODE, wide, false);
     if (damage) exchange_window(b, own->damage_window, s->damage_grid, 1, BLOCK_NODES * DAMAGE_NODE, wide, false);
     for (int32_t i = b->first_tile; i < b->first_tile + b->tile_count; i++) {
         tile_work w = {.state = s, .tile = &s->tiles[i], .scratch = &own->tile, .result = &s->tile_results[i], .dt = t->dt};
@@ -470,10 +503,11 @@ SIMD_INLINE void block_to_particles(transfer_context *t, int32_t block_index, in
         if (damage && s->material_mask[w.tile->material] >> EFFECT_damage & 1)
             gather_laplacian(&w, laplacian, laplacian == KERNEL_QUADRATIC ? 3 : 4, own->damage_window);
         gather_weights(&w, kernel);
-        for (int p = 0; p < w.tile->count; p++)
-            gather_particle(w.scratch->records + p * RECORD, kernel == KERNEL_QUADRATIC ? 3 : 4, node_offset, own->window);
-        for (int p = w.tile->count; p < w.tile->pack_count * PACK; p++)
-            memset(w.scratch->records + p * RECORD + G2P_OUT, 0, 16 * sizeof(real));
+        if (s->old_grid) {
+            gather_tile(&w, kernel, node_offset, own->old_window);
+            keep_old_velocity(&w);
+        }
+        gather_tile(&w, kernel, node_offset, own->window);
         advance_particles(&w, kernel);
         CALL_STAGE(&w, update);
         limit_momentum(&w);
@@ -513,6 +547,7 @@ static void clear_slot(void *context, int64_t slot, int worker) {
     (void)worker;
     solid *s = context;
     memset(s->grid + slot * BLOCK_NODES * NODE, 0, BLOCK_NODES * NODE * sizeof(real));
+    if (s->old_grid) memset(s->old_grid + slot * BLOCK_NODES * NODE, 0, BLOCK_NODES * NODE * sizeof(real));
     if (s->damage_grid) memset(s->damage_grid + slot * BLOCK_NODES * DAMAGE_NODE, 0, BLOCK_NODES * DAMAGE_NODE * sizeof(real));
 }
 

@@ -173,17 +173,17 @@ static void test_sphere_has_relief(void) {
 
 /* Spheres hidden behind others are passed over: the picture must be the one that all of them make. */
 static void test_hidden_spheres_change_nothing(void) {
-    enum { COUNT = 600, W = 90, H = 70 };
+    enum { COUNT = 4000, W = 150, H = 110 };
     static float position[COUNT][3], value[COUNT];
     for (uint64_t i = 0; i < COUNT; i++) {
-        for (uint64_t k = 0; k < 3; k++) position[i][k] = 100 * (float)random_unit(11, k, i) - 10;
+        for (uint64_t k = 0; k < 3; k++) position[i][k] = 170 * (float)random_unit(11, k, i) - 10;
         value[i] = (float)i / COUNT;
     }
     view_canvas canvas = {0};
     report r;
     CHECK(view_canvas_resize(&canvas, W, H, &r) == STATUS_OK);
     view_projection p = flat();
-    const float radius = 9;
+    const float radius = 12;
     view_canvas_draw(&canvas, &p, &position[0][0], value, COUNT, radius);
     int wrong = 0, covered = 0;
     for (int i = 0; i < W * H; i++) {

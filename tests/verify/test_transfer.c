@@ -113,6 +113,38 @@ static void affine_fields_survive(void) {
     }
 }
 
+/* Energy of the same spinning block under each transfer: PIC loses most, FLIP at ratio 1 least of the three without an affine part, and a
+ * rigid translation is exact for all of them. */
+static double kinetic_after(transfer_kind transfer, double ratio, double *momentum_change) {
+    scene *s = test_scene(block, 100, 0.3, 2);
+    s->particles = 1500;
+    s->transfer = transfer;
+    s->transfer_ratio = ratio;
+    s->bodies[0].velocity = (scene_function){.outputs = 3, .call = spin};
+    simulation *sim = test_simulation(s, 64, "auto", 2);
+    simulation_measures start, now;
+    report r;
+    simulation_measure(sim, &start, &r);
+    for (int step = 0; step < 300; step++) CHECK(simulation_step(sim, 1e-3, &r) == STATUS_OK);
+    simulation_measure(sim, &now, &r);
+    *momentum_change = 0;
+    for (int c = 0; c < 3; c++) *momentum_change = fmax(*momentum_change, fabs(now.solid.momentum[c] - start.solid.momentum[c]));
+    simulation_destroy(sim);
+    scene_destroy(s);
+    return (now.solid.kinetic + now.solid.elastic) / (start.solid.kinetic + start.solid.elastic);
+}
+
+static void transfers_differ_in_damping(void) {
+    double change[5];
+    double apic = kinetic_after(TRANSFER_APIC, 0, &change[0]), rpic = kinetic_after(TRANSFER_RPIC, 0, &change[1]);
+    double pic = kinetic_after(TRANSFER_PIC, 0, &change[2]), flip = kinetic_after(TRANSFER_FLIP, 1, &change[3]);
+    double blend = kinetic_after(TRANSFER_FLIP, 0, &change[4]);
+    printf("  energy kept: apic %.4f, rpic %.4f, flip %.4f, flip at ratio 0 %.4f, pic %.4f\n", apic, rpic, flip, blend, pic);
+    CHECK(apic > 0.9 && flip > 0.9 && rpic < apic && pic < 0.8 && pic < rpic);
+    CHECK_NEAR(blend, pic, 1e-12); /* FLIP without its increment is PIC */
+    for (int i = 0; i < 5; i++) CHECK(change[i] < 1e-12);
+}
+
 /* Largest difference of positions after 200 steps between a build and f64 plain. */
 static double difference_from_plain(int precision, const char *simd, kernel_kind laplacian) {
     double *x[2] = {NULL, NULL};
@@ -162,6 +194,7 @@ static void vector_builds_agree_with_plain(void) {
 int main(void) {
     RUN(momenta_are_kept);
     RUN(affine_fields_survive);
+    RUN(transfers_differ_in_damping);
     RUN(vector_builds_agree_with_plain);
     return check_finish();
 }

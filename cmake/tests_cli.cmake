@@ -1,0 +1,2 @@
+add_test(NAME cli COMMAND python3 ${CMAKE_SOURCE_DIR}/tests/cases/test_cli.py $<TARGET_FILE:sunder> ${CMAKE_SOURCE_DIR})
+set_tests_properties(cli PROPERTIES TIMEOUT 900)

@@ -1,0 +1,3 @@
+sunder_test(script tests/unit/test_script.c sunder_script)
+sunder_test(script_wrong tests/unit/test_script_wrong.c sunder_script)
+sunder_test(script_strings tests/unit/test_script_strings.c sunder_script)

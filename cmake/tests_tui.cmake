@@ -1,0 +1,12 @@
+# The screen's tests run it over a synthetic session: the tui library leaves session.h's functions to whoever links it.
+sunder_test(view ${CMAKE_SOURCE_DIR}/tests/unit/test_view.c sunder_view)
+
+add_executable(demo_tui ${CMAKE_SOURCE_DIR}/tests/tui/demo_tui.c ${CMAKE_SOURCE_DIR}/tests/tui/fake_session.c)
+target_include_directories(demo_tui PRIVATE ${CMAKE_SOURCE_DIR}/tests)
+target_link_libraries(demo_tui PRIVATE sunder_tui)
+
+find_package(Python3 COMPONENTS Interpreter)
+if(Python3_FOUND)
+  add_test(NAME tui COMMAND ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/tests/tui/test_tui.py $<TARGET_FILE:demo_tui>)
+  set_tests_properties(tui PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 300)
+endif()

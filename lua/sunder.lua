@@ -1,0 +1,292 @@
+--- The scene language of sunder.
+---
+---     local s = require "sunder"
+---     return s.scene { solids = { { shape = s.sphere { radius = 1 }, material = s.recipe "tube" } } }
+---
+--- This file is the module itself (it is compiled into the program) and, through its annotations, what an editor with the
+--- Lua language server shows while a scene is being written. `core` is the C side: it checks every value, names the line of
+--- what is wrong, and knows all effects from their tables (`sunder explain SCENE` lists them).
+
+local core = ...
+local pairs, type = pairs, type
+
+local s = {}
+
+---@alias Vector number[]  three numbers { x, y, z }
+---@alias Axis "x"|"y"|"z"|"-x"|"-y"|"-z"|Vector  a direction; a vector need not have length 1
+---@alias OfTime Vector|fun(t: number): number, number, number  a constant, or a function of time
+---@alias OfPlace Vector|fun(x: number, y: number, z: number): number, number, number  a constant, or a function of place
+
+-- Parameters ----------------------------------------------------------------------------------------------------------
+
+---@class Parameter
+---@field [1] number|string|boolean  the value when nobody says otherwise
+---@field unit? string
+---@field doc? string
+---@field min? number
+---@field max? number
+
+--- Declares the knobs of a scene and gives their values: the defaults, or what `--set NAME=VALUE` says. The names particles,
+--- duration, fps, dx, dt, seed and cfl act on the scene without being said again.
+---@param declared table<string, number|string|boolean|Parameter|Choice>
+---@return table<string, any>  read-only; a name that was not declared is an error
+function s.params(declared)
+  return core.params(declared)
+end
+
+---@class Choice
+
+--- One of several names; the first is the default.
+---@param names string[]
+---@return Choice
+function s.choice(names)
+  return core.choice(names)
+end
+
+-- The scene -----------------------------------------------------------------------------------------------------------
+
+--- A material says its density and names the effects that it has. `false` leaves an effect out, `true` takes its defaults.
+---@class Material
+---@field density number
+---@field name? string
+---@field [string] table|boolean|number  effect = { key = value, … }
+
+---@class Solid
+---@field name? string
+---@field shape Shape
+---@field material Material|string  a table, or the name of a recipe
+---@field fibres? Fibres
+---@field velocity? OfPlace  at the start; at rest if absent
+---@field sampling? "lattice"|"jittered"|"poisson"  "jittered" if absent
+
+--- A grip takes hold of whatever is inside a moving region.
+---@class Grip
+---@field name? string
+---@field shape Shape  at time 0
+---@field velocity? OfTime  holds still if absent
+---@field spin? OfTime  angular velocity about the pivot
+---@field pivot? Vector  the middle of the shape if absent
+---@field start? number  0 if absent
+---@field stop? number  never if absent
+---@field protects? boolean  what starts inside is never damaged; true if absent
+
+--- A collider is a rigid shape that material cannot enter.
+---@class Collider
+---@field name? string
+---@field shape Shape  at time 0
+---@field velocity? OfTime
+---@field spin? OfTime
+---@field pivot? Vector
+---@field start? number
+---@field stop? number
+---@field contact? "sticky"|"slip"|"separate"  "sticky" if absent
+---@field friction? number  Coulomb's coefficient, for slip and separate; 0 if absent
+
+--- A wall keeps material on the side that its normal points to.
+---@class Wall
+---@field point Vector
+---@field normal Axis
+---@field contact? "sticky"|"slip"|"separate"
+---@field friction? number
+
+---@class Scene
+---@field title? string
+---@field units? string  a name for the system of units ("SI", "cgs"); output carries it
+---@field duration number
+---@field fps? number  24 if absent
+---@field particles? integer  about how many, over all solids
+---@field dx? number|"auto"  grid spacing; "auto": from particles and particles_per_cell
+---@field dt? number|"auto"  time step; "auto": the largest that is safe
+---@field cfl? number  fraction of the step limit
+---@field seed? integer
+---@field particles_per_cell? number
+---@field transfer? "apic"|"rpic"|"pic"|"flip"
+---@field transfer_ratio? number
+---@field kernel? "quadratic"|"cubic"
+---@field laplacian? "quadratic"|"cubic"
+---@field domain? { min: Vector, max: Vector }
+---@field gravity? Vector
+---@field solids Solid[]
+---@field grips? Grip[]
+---@field colliders? Collider[]
+---@field walls? Wall[]
+
+--- The scene: what a scene file returns.
+---@param scene Scene
+---@return Scene
+function s.scene(scene)
+  return core.scene(scene)
+end
+
+--- A material from recipes/NAME.lua (beside the scene, in a folder above it, or in $SUNDER_RECIPES; a name that ends in .lua
+--- is a path from the scene). Overrides replace single keys; `effect = false` turns an effect off.
+---
+---     s.recipe("tube", { damage = { eta = 0.1 }, fibres = false })
+---@param name string
+---@param overrides? table
+---@return Material
+function s.recipe(name, overrides)
+  local material = core.recipe(name, overrides)
+  for effect, given in pairs(overrides or {}) do
+    local own = material[effect]
+    if type(own) == "table" and type(given) == "table" then
+      for key, value in pairs(given) do
+        -- Two keys of an effect may say the same thing (break_stretch, sigma_c): the one that is said last holds.
+        local twin = core.twin(effect, key)
+        if twin and given[twin] == nil then own[twin] = nil end
+        own[key] = value
+      end
+    elseif not (own and given == true) then
+      material[effect] = given
+    end
+  end
+  return material
+end
+
+-- Shapes --------------------------------------------------------------------------------------------------------------
+
+---@class Shape
+---@operator add(Shape): Shape  union
+---@operator mul(Shape): Shape  intersection
+---@operator sub(Shape): Shape  difference
+---@field union fun(self: Shape, ...: Shape): Shape
+---@field intersection fun(self: Shape, ...: Shape): Shape
+---@field difference fun(self: Shape, ...: Shape): Shape
+---@field translate fun(self: Shape, vector: Vector): Shape
+---@field rotate fun(self: Shape, turn: { axis: Axis, angle: number, center?: Vector }): Shape
+---@field scale fun(self: Shape, factor: number): Shape
+
+---@param t { radius: number, center?: Vector }
+---@return Shape
+function s.sphere(t)
+  return core.shape("sphere", t)
+end
+
+---@param t { min: Vector, max: Vector } | { center?: Vector, size: Vector }
+---@return Shape
+function s.box(t)
+  return core.shape("box", t)
+end
+
+---@param t { axis: Axis, radius: number, length: number, center?: Vector }
+---@return Shape
+function s.cylinder(t)
+  return core.shape("cylinder", t)
+end
+
+--- A cylinder with a hole along its axis. `taper` scales both radii, linearly, to that factor at the far end.
+---@param t { axis: Axis, outer: number, inner: number, length: number, center?: Vector, taper?: number }
+---@return Shape
+function s.tube(t)
+  return core.shape("tube", t)
+end
+
+---@param t { from: Vector, to: Vector, radius: number }
+---@return Shape
+function s.capsule(t)
+  return core.shape("capsule", t)
+end
+
+--- A ring of radius `major` around the axis, `minor` thick.
+---@param t { axis: Axis, major: number, minor: number, center?: Vector }
+---@return Shape
+function s.torus(t)
+  return core.shape("torus", t)
+end
+
+--- Everything behind a plane: the normal points out of it. Without an end, so good for cutting and for colliders.
+---@param t { normal: Axis, point?: Vector }
+---@return Shape
+function s.half_space(t)
+  return core.shape("half_space", t)
+end
+
+--- What is in any of the shapes. Also `a + b`.
+---@param ... Shape|Shape[]
+---@return Shape
+function s.union(...)
+  return core.combine("union", ...)
+end
+
+--- What is in all of the shapes. Also `a * b`.
+---@param ... Shape|Shape[]
+---@return Shape
+function s.intersection(...)
+  return core.combine("intersection", ...)
+end
+
+--- What is in the first shape and in none of the others. Also `a - b`.
+---@param base Shape
+---@param ... Shape|Shape[]
+---@return Shape
+function s.difference(base, ...)
+  return core.combine("difference", base, ...)
+end
+
+---@param shape Shape
+---@param vector Vector
+---@return Shape
+function s.translate(shape, vector)
+  return core.translate(shape, vector)
+end
+
+--- Turns a shape by `angle` degrees around an axis through `center` (the origin if absent), counter-clockwise as seen from
+--- where the axis points to.
+---@param shape Shape
+---@param turn { axis: Axis, angle: number, center?: Vector }
+---@return Shape
+function s.rotate(shape, turn)
+  return core.rotate(shape, turn)
+end
+
+--- Scales a shape about the origin.
+---@param shape Shape
+---@param factor number
+---@return Shape
+function s.scale(shape, factor)
+  return core.scale(shape, factor)
+end
+
+-- Fibres --------------------------------------------------------------------------------------------------------------
+
+---@class Fibres
+
+s.fibres = {}
+
+--- The same direction everywhere; a second vector lays a second family.
+---@param first Vector
+---@param second? Vector
+---@return Fibres
+function s.fibres.direction(first, second)
+  return core.fibres("direction", first, second)
+end
+
+--- A direction for each place: three numbers, or six for two families. Called once for each particle, at the start.
+---@param direction fun(x: number, y: number, z: number): number, number, number, number?, number?, number?
+---@return Fibres
+function s.fibres.field(direction)
+  return core.fibres("field", direction)
+end
+
+--- Away from an axis.
+---@param t { axis: Axis, center?: Vector }
+---@return Fibres
+function s.fibres.radial(t)
+  return core.fibres("radial", t)
+end
+
+--- Around an axis, like hoops.
+---@param t { axis: Axis, center?: Vector }
+---@return Fibres
+function s.fibres.circumferential(t)
+  return core.fibres("circumferential", t)
+end
+
+--- Around an axis and climbing along it: `angle` degrees from the hoop (0) towards the axis (90).
+---@param t { axis: Axis, angle: number, center?: Vector }
+---@return Fibres
+function s.fibres.helical(t)
+  return core.fibres("helical", t)
+end
+
+return s

@@ -1,0 +1,128 @@
+/* sunder render: a frame of a run as a PNG. */
+#include "cli/cli.h"
+
+#include "base/memory.h"
+#include "base/record.h"
+#include "store/frames.h"
+#include "store/ledger.h"
+#include "view/picture.h"
+
+#include <getopt.h>
+#include <math.h>
+#include <string.h>
+
+typedef struct render_options {
+    const char *run, *database, *out, *colour;
+    long frame, width, height, yaw, pitch;
+} render_options;
+
+static const struct option long_options[] = {
+    {"frame", required_argument, NULL, 'f'}, {"out", required_argument, NULL, 'o'},    {"db", required_argument, NULL, 'd'},
+    {"width", required_argument, NULL, 'w'}, {"height", required_argument, NULL, 'h'}, {"colour", required_argument, NULL, 'c'},
+    {"yaw", required_argument, NULL, 'y'},   {"pitch", required_argument, NULL, 'p'},  {NULL, 0, NULL, 0}};
+
+static int parse(render_options *o, int count, char **arguments) {
+    int option, code = 0;
+    while ((option = getopt_long(count, arguments, "", long_options, NULL)) != -1) {
+        switch (option) {
+        case 'f': code = cli_number("render", "--frame", optarg, 0, 1000000000, &o->frame); break;
+        case 'o': o->out = optarg; break;
+        case 'd': o->database = optarg; break;
+        case 'c': o->colour = optarg; break;
+        case 'w': code = cli_number("render", "--width", optarg, 16, 8192, &o->width); break;
+        case 'h': code = cli_number("render", "--height", optarg, 16, 8192, &o->height); break;
+        case 'y': code = cli_number("render", "--yaw", optarg, -360, 360, &o->yaw); break;
+        case 'p': code = cli_number("render", "--pitch", optarg, -90, 90, &o->pitch); break;
+        default: return cli_usage("render", "wrong option");
+        }
+        if (code) return code;
+    }
+    if (optind != count - 1) return cli_usage("render", "expected one run (an id, its beginning or end, or last)");
+    o->run = arguments[optind];
+    return 0;
+}
+
+static status find_folder(const render_options *o, char *folder, size_t size, report *r) {
+    char path[1024], id[LEDGER_ID];
+    ledger *l = NULL;
+    status code = STATUS_OK;
+    if (o->database) snprintf(path, sizeof path, "%s", o->database);
+    else code = ledger_default_path(path, sizeof path, r);
+    if (code == STATUS_OK) code = ledger_open(path, &l, r);
+    if (code == STATUS_OK) code = ledger_resolve(l, o->run, id, folder, size, r);
+    if (l) ledger_close(l);
+    return code;
+}
+
+/* A record's values as floats, [count][components]; NULL when it is absent or memory is out. */
+static float *as_floats(const record *item) {
+    if (!item || (item->type != RECORD_F32 && item->type != RECORD_F64)) return NULL;
+    size_t n = (size_t)item->count * (size_t)item->components;
+    float *out = memory_allocate_array(n, sizeof *out);
+    for (size_t i = 0; out && i < n; i++)
+        out[i] = item->type == RECORD_F32 ? ((const float *)item->data)[i] : (float)((const double *)item->data)[i];
+    return out;
+}
+
+static void free_floats(float *values, const record *item) {
+    if (values) memory_free(values, (size_t)item->count * (size_t)item->components * sizeof *values);
+}
+
+/* The first frame's bounds hold the camera still over all frames of a run. */
+static status fit_camera(const char *folder, view_camera *camera, report *r) {
+    record_list first = {0};
+    double time;
+    int64_t step;
+    status code = frame_read(folder, 0, &first, &time, &step, r);
+    const record *position = code == STATUS_OK ? record_find(&first, "solid/position") : NULL;
+    float *points = as_floats(position), low[3], high[3];
+    if (points) {
+        view_bounds(points, position->count, low, high);
+        view_camera_fit(camera, low, high);
+    }
+    free_floats(points, position);
+    record_clear(&first);
+    return code;
+}
+
+static status draw(const render_options *o, const record_list *records, view_render_options *look, report *r) {
+    const record *position = record_find(records, "solid/position");
+    const record *value = record_find(records, o->colour ? o->colour : "solid/damage");
+    if (o->colour && (!value || value->components != 1))
+        return report_input(r, NULL, 0, "--colour", "a field of the frame with one component, such as solid/damage", o->colour, NULL);
+    float *points = as_floats(position), *values = as_floats(value);
+    size_t bytes = (size_t)look->width * (size_t)look->height * 3;
+    uint8_t *rgb = memory_allocate(bytes);
+    status code = points && rgb ? STATUS_OK : report_set(r, STATUS_SYSTEM, "out of memory for the picture, or a frame without particles");
+    if (code == STATUS_OK) code = view_render_points(points, values, position->count, look, rgb, r);
+    if (code == STATUS_OK) code = view_write_png(o->out, rgb, look->width, look->height, r);
+    free_floats(points, position);
+    free_floats(values, value);
+    memory_free(rgb, bytes);
+    return code;
+}
+
+int command_render(int count, char **arguments) {
+    render_options o = {.frame = -1, .out = "sunder.png", .width = 1280, .height = 720, .yaw = 25, .pitch = 20};
+    int result = parse(&o, count, arguments);
+    if (result) return result;
+    char folder[1024];
+    record_list records = {0};
+    double time = 0;
+    int64_t step;
+    report r;
+    view_render_options look = view_render_options_default();
+    look.width = (int)o.width;
+    look.height = (int)o.height;
+    look.camera.yaw = (float)((double)o.yaw * M_PI / 180);
+    look.camera.pitch = (float)((double)o.pitch * M_PI / 180);
+    status code = find_folder(&o, folder, sizeof folder, &r);
+    int64_t frame = code == STATUS_OK && o.frame < 0 ? frame_last(folder) : o.frame;
+    if (code == STATUS_OK) code = fit_camera(folder, &look.camera, &r);
+    if (code == STATUS_OK) code = frame_read(folder, frame, &records, &time, &step, &r);
+    if (code == STATUS_OK) code = draw(&o, &records, &look, &r);
+    record_clear(&records);
+    if (code != STATUS_OK) return cli_fail(&r);
+    fprintf(stderr, "%s: frame %lld, t = %.4g\n", o.out, (long long)frame, time);
+    return 0;
+}

@@ -1,0 +1,27 @@
+#include "tui/widgets.h"
+
+#include "tui/actions.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* The first word of "s  .": one key stands for all that an action has. */
+static void first_key(const char *shown, char key[16]) {
+    size_t length = strcspn(shown, " ");
+    snprintf(key, 16, "%.*s", (int)length, shown);
+}
+
+void widget_keys(const tui_app *app, tui_area area) {
+    int count, column = 1;
+    const tui_action *actions = tui_actions(&count);
+    draw_blank(&app->theme, area, 0, STYLE_BAR);
+    for (int i = 0; i < count; i++) {
+        char key[16];
+        if (!actions[i].hint) continue;
+        first_key(actions[i].keys_shown, key);
+        int width = draw_width(key) + 1 + draw_width(actions[i].hint);
+        if (column + width > area.width - 1) continue;
+        column = draw_text(&app->theme, area, 0, column, STYLE_BAR_STRONG, key);
+        column = draw_text(&app->theme, area, 0, column + 1, STYLE_BAR, actions[i].hint) + 2;
+    }
+}

@@ -1,0 +1,163 @@
+#include "tui/theme.h"
+
+#include "base/memory.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIDE = 257, PAIRS = SIDE * SIDE };
+
+/* What a style is made of at each depth of colour; −1 is the terminal's own colour. */
+typedef struct style_row {
+    attr_t attributes;
+    short fore256, back256;
+    short fore8, back8;
+    attr_t mono;
+} style_row;
+
+typedef struct theme_row {
+    const char *name;
+    view_palette palette;
+    style_row styles[STYLE_COUNT];
+} theme_row;
+
+static const theme_row themes[TUI_THEMES] = {
+    [TUI_DARK] = {"dark",
+                  VIEW_EMBER,
+                  {
+                      [STYLE_TEXT] = {A_NORMAL, -1, -1, -1, -1, A_NORMAL},
+                      [STYLE_DIM] = {A_NORMAL, 244, -1, -1, -1, A_NORMAL},
+                      [STYLE_STRONG] = {A_NORMAL, 254, -1, -1, -1, A_BOLD},
+                      [STYLE_HEAD] = {A_NORMAL, 110, -1, 6, -1, A_BOLD},
+                      [STYLE_BAR] = {A_NORMAL, 247, 236, -1, -1, A_REVERSE},
+                      [STYLE_BAR_STRONG] = {A_BOLD, 255, 236, -1, -1, A_REVERSE},
+                      [STYLE_BAR_GOOD] = {A_BOLD, 114, 236, -1, -1, A_REVERSE},
+                      [STYLE_BAR_WARN] = {A_BOLD, 221, 236, -1, -1, A_REVERSE},
+                      [STYLE_BAR_BAD] = {A_BOLD, 210, 236, 1, -1, A_REVERSE},
+                      [STYLE_GOOD] = {A_NORMAL, 114, -1, 2, -1, A_NORMAL},
+                      [STYLE_WARN] = {A_NORMAL, 221, -1, 3, -1, A_BOLD},
+                      [STYLE_BAD] = {A_BOLD, 210, -1, 1, -1, A_BOLD},
+                      [STYLE_PLOT] = {A_NORMAL, 110, -1, 6, -1, A_NORMAL},
+                  }},
+    [TUI_LIGHT] = {"light",
+                   VIEW_INK,
+                   {
+                       [STYLE_TEXT] = {A_NORMAL, -1, -1, -1, -1, A_NORMAL},
+                       [STYLE_DIM] = {A_NORMAL, 242, -1, -1, -1, A_NORMAL},
+                       [STYLE_STRONG] = {A_NORMAL, 234, -1, -1, -1, A_BOLD},
+                       [STYLE_HEAD] = {A_NORMAL, 25, -1, 4, -1, A_BOLD},
+                       [STYLE_BAR] = {A_NORMAL, 240, 254, -1, -1, A_REVERSE},
+                       [STYLE_BAR_STRONG] = {A_BOLD, 233, 254, -1, -1, A_REVERSE},
+                       [STYLE_BAR_GOOD] = {A_BOLD, 22, 254, -1, -1, A_REVERSE},
+                       [STYLE_BAR_WARN] = {A_BOLD, 94, 254, -1, -1, A_REVERSE},
+                       [STYLE_BAR_BAD] = {A_BOLD, 124, 254, 1, -1, A_REVERSE},
+                       [STYLE_GOOD] = {A_NORMAL, 22, -1, 2, -1, A_NORMAL},
+                       [STYLE_WARN] = {A_NORMAL, 94, -1, 5, -1, A_BOLD},
+                       [STYLE_BAD] = {A_BOLD, 124, -1, 1, -1, A_BOLD},
+                       [STYLE_PLOT] = {A_NORMAL, 25, -1, 4, -1, A_NORMAL},
+                   }},
+    [TUI_COLOUR_BLIND] = {"colour-blind",
+                          VIEW_CIVIC,
+                          {
+                              [STYLE_TEXT] = {A_NORMAL, -1, -1, -1, -1, A_NORMAL},
+                              [STYLE_DIM] = {A_NORMAL, 244, -1, -1, -1, A_NORMAL},
+                              [STYLE_STRONG] = {A_BOLD, -1, -1, -1, -1, A_BOLD},
+                              [STYLE_HEAD] = {A_NORMAL, 74, -1, 6, -1, A_BOLD},
+                              [STYLE_BAR] = {A_NORMAL, 247, 236, -1, -1, A_REVERSE},
+                              [STYLE_BAR_STRONG] = {A_BOLD, 255, 236, -1, -1, A_REVERSE},
+                              [STYLE_BAR_GOOD] = {A_BOLD, 117, 236, -1, -1, A_REVERSE},
+                              [STYLE_BAR_WARN] = {A_BOLD, 222, 236, -1, -1, A_REVERSE},
+                              [STYLE_BAR_BAD] = {A_BOLD | A_UNDERLINE, 208, 236, 7, -1, A_REVERSE | A_UNDERLINE},
+                              [STYLE_GOOD] = {A_NORMAL, 74, -1, 6, -1, A_NORMAL},
+                              [STYLE_WARN] = {A_NORMAL, 222, -1, 3, -1, A_BOLD},
+                              [STYLE_BAD] = {A_BOLD | A_UNDERLINE, 208, -1, 7, -1, A_BOLD | A_UNDERLINE},
+                              [STYLE_PLOT] = {A_NORMAL, 74, -1, 6, -1, A_NORMAL},
+                          }},
+};
+
+const char *theme_name(tui_theme_kind kind) {
+    return themes[kind].name;
+}
+
+/* Starts curses' colours if any are wanted, and says how many of them to use. */
+static int start_colours(int wanted) {
+    const char *no_colour = getenv("NO_COLOR");
+    if (wanted == TUI_AUTO && no_colour && no_colour[0]) wanted = 0;
+    if (wanted == 0 || !has_colors() || start_color() == ERR) return 0;
+    use_default_colors();
+    int most = wanted == TUI_AUTO || wanted > COLORS ? COLORS : wanted;
+    return most >= 256 ? 256 : most >= 16 ? 16 : most >= 8 ? 8 : 0;
+}
+
+/* Terminals with a light background often say so: COLORFGBG is "foreground;background". */
+static tui_theme_kind guess_kind(void) {
+    const char *hint = getenv("COLORFGBG");
+    const char *background = hint ? strrchr(hint, ';') : NULL;
+    if (background && (strcmp(background, ";7") == 0 || strcmp(background, ";15") == 0)) return TUI_LIGHT;
+    return TUI_DARK;
+}
+
+tui_ink theme_pair(tui_theme *theme, int foreground, int background) {
+    if (theme->colours == 0) return (tui_ink){A_NORMAL, 0};
+    int slot = (foreground + 1) * SIDE + background + 1;
+    if (slot == 0) return (tui_ink){A_NORMAL, 0};
+    if (theme->pairs[slot] == 0) {
+        /* Few terminals run out; those keep the foreground and give up the background. */
+        if (theme->pair_count + 1 >= theme->pair_limit)
+            return background >= 0 ? theme_pair(theme, foreground, -1) : (tui_ink){A_NORMAL, 0};
+        theme->pairs[slot] = ++theme->pair_count;
+        init_pair(theme->pair_count, (short)foreground, (short)background);
+    }
+    return (tui_ink){A_NORMAL, theme->pairs[slot]};
+}
+
+int theme_colour(const tui_theme *theme, float value, float light) {
+    switch (theme->colours) {
+    case 0: return -1;
+    case 256: return view_rgb_to_256(view_palette_rgb(theme->palette, value, light));
+    default: return view_palette_ansi(theme->palette, value, theme->colours == 16);
+    }
+}
+
+tui_ink theme_value(tui_theme *theme, float value) {
+    if (theme->colours == 0) return (tui_ink){value >= 0.5f ? A_BOLD : A_NORMAL, 0};
+    tui_ink ink = theme_pair(theme, theme_colour(theme, value, 1), -1);
+    /* Plain blue on black is hardly seen; bold is the bright variant on most terminals of 8 colours. */
+    if (theme->colours == 8 && theme->kind != TUI_LIGHT) ink.attributes |= A_BOLD;
+    return ink;
+}
+
+static tui_ink style_ink(tui_theme *theme, const style_row *row) {
+    if (theme->colours == 0) return (tui_ink){row->mono, 0};
+    bool many = theme->colours == 256;
+    tui_ink ink = theme_pair(theme, many ? row->fore256 : row->fore8, many ? row->back256 : row->back8);
+    ink.attributes = row->attributes;
+    /* With few colours a bar is told apart by being reversed, and a value by being bold. */
+    if (!many && row->back256 >= 0) ink.attributes |= A_REVERSE;
+    if (!many && row == &themes[theme->kind].styles[STYLE_STRONG]) ink.attributes |= A_BOLD;
+    return ink;
+}
+
+void theme_choose(tui_theme *theme, tui_theme_kind kind) {
+    if (kind == TUI_THEME_AUTO) kind = guess_kind();
+    theme->kind = kind;
+    theme->palette = themes[kind].palette;
+    theme->pair_count = 0;
+    memset(theme->pairs, 0, PAIRS * sizeof(short));
+    for (int i = 0; i < STYLE_COUNT; i++) theme->styles[i] = style_ink(theme, &themes[kind].styles[i]);
+}
+
+status theme_open(tui_theme *theme, tui_theme_kind kind, int wanted, bool ascii, report *r) {
+    theme->pairs = memory_allocate_array(PAIRS, sizeof(short));
+    if (!theme->pairs) return report_set(r, STATUS_SYSTEM, "out of memory for the screen's colours");
+    theme->ascii = ascii;
+    theme->colours = start_colours(wanted);
+    if (theme->colours > 0) theme->pair_limit = (short)(COLOR_PAIRS > 32767 ? 32767 : COLOR_PAIRS);
+    theme_choose(theme, kind);
+    return STATUS_OK;
+}
+
+void theme_close(tui_theme *theme) {
+    memory_free(theme->pairs, PAIRS * sizeof(short));
+    theme->pairs = NULL;
+}

@@ -1,0 +1,229 @@
+#!/usr/bin/env python3
+"""The command line as its users and their scripts meet it: exit codes, JSON, ledger, frames, resuming, interrupting.
+
+Usage: test_cli.py SUNDER SOURCE_DIR [NAME...]   Each test works in a folder and with a ledger of its own.
+"""
+import glob, json, os, re, shutil, signal, sqlite3, subprocess, sys, tempfile, time
+
+SUNDER, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+PULL = os.path.join(SOURCE, "scenes/solid/tube_pull.lua")
+SMALL = ["--set", "particles=1500", "--set", "break_stretch=0.02", "--set", "pull=0.6"]
+failures, checks = [], 0
+
+
+def check(condition, text):
+    global checks
+    checks += 1
+    if not condition:
+        failures.append(text)
+        print("  failed:", text)
+
+
+class Box:
+    """A scratch folder with its own ledger."""
+
+    def __enter__(self):
+        self.folder = tempfile.mkdtemp(prefix="sunder-cli-")
+        self.db = os.path.join(self.folder, "ledger.db")
+        self.environment = dict(os.environ, SUNDER_DB=self.db, XDG_DATA_HOME=os.path.join(self.folder, "data"))
+        return self
+
+    def __exit__(self, *_):
+        shutil.rmtree(self.folder)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def start(self, *arguments):
+        return subprocess.Popen([SUNDER, *arguments], env=self.environment, cwd=self.folder, stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True)
+
+    def call(self, *arguments):
+        process = self.start(*arguments)
+        out, err = process.communicate(timeout=300)
+        return process.returncode, out, err
+
+    def run(self, *arguments):
+        code, out, err = self.call("run", *arguments, "--json", "--quiet")
+        return code, json.loads(out) if out else None, err
+
+    def statuses(self):
+        if not os.path.exists(self.db):
+            return []
+        with sqlite3.connect(self.db) as connection:
+            return [row[0] for row in connection.execute("SELECT status FROM runs ORDER BY started")]
+
+
+def frames_of(folder):
+    return sorted(os.path.basename(f) for f in glob.glob(os.path.join(folder, "frames", "[0-9]*.hdf")))
+
+
+def test_contract_of_run():
+    with Box() as box:
+        code, result, err = box.run(PULL, *SMALL, "--frames", "4", "--out", box.path("out"))
+        check(code == 0, f"exit code {code}: {err}")
+        for key in ("run_id scene status frames steps particles wall_s step_wall_s particle_steps_per_s threads precision effects "
+                    "dt_min dt_max time energy momentum angular_momentum damage bytes_per_particle peak_rss_bytes out db crack_normal").split():
+            check(key in result, f"'{key}' in the summary")
+        check(result["status"] == "done" and result["frames"] == 4, "four frames done")
+        check({"kinetic", "elastic"} <= set(result["energy"]), "energies")
+        check({"mean", "max", "broken_fraction"} <= set(result["damage"]), "damage")
+        check(frames_of(box.path("out")) == [f"{i:06d}.hdf" for i in range(5)], "frames 0 to 4 on disk")
+        check(json.load(open(box.path("out/result.json")))["run_id"] == result["run_id"], "result.json is the summary")
+        check(os.path.exists(box.path("out/scene/tube_pull.lua")) and os.path.exists(box.path("out/scene/recipes/tube.lua")), "scripts are kept")
+        check(abs(result["time"] - 4 / 24) < 1e-12, "time of frame 4")
+        check(result["effects"] == ["damage", "elastic", "fibres", "gravity", "boundary"], "effects by name")
+        check(box.statuses() == ["done"], "one row, done")
+        code, out, _ = box.call("run", PULL, *SMALL, "--frames", "1", "--json")
+        json.loads(out)
+        check(code == 0, "--json alone: one object on standard output")
+
+
+def test_variants_turn_effects_off():
+    with Box() as box:
+        expected = {"full": {"damage", "elastic", "fibres"}, "isotropic": {"damage", "elastic"},
+                    "damage_only": {"damage", "elastic"}, "elastic_only": {"elastic", "fibres"}}
+        sizes = {}
+        for variant, effects in expected.items():
+            code, out, err = box.call("explain", PULL, "--set", "particles=1500", "--set", f"variant={variant}", "--json")
+            plan = json.loads(out or "{}")
+            check(code == 0 and set(plan["effects_on"]) == effects | {"gravity", "boundary"}, f"{variant}: {plan} {err}")
+            names = {f["name"] for f in plan["fields"]}
+            check(("damage" in names) == ("damage" in effects), f"{variant}: a field of damage only with damage")
+            check(any("damage" in stage for stage in plan["stages"]) == ("damage" in effects), f"{variant}: stages of damage only with damage")
+            check(plan["dt"] <= min(plan["step_limits"].values()) * 1.0001, f"{variant}: dt within the limits")
+            sizes[variant] = plan["bytes_per_particle"]
+        check(sizes["elastic_only"] < sizes["full"], "what is off takes no memory")
+
+
+def test_same_bits_over_threads():
+    with Box() as box:
+        hashes = {box.run(PULL, *SMALL, "--frames", "6", "--threads", str(n))[1]["state_hash"] for n in (1, 2, 3, 7)}
+        check(len(hashes) == 1, f"one hash over threads, found {hashes}")
+
+
+def test_resume_gives_the_same_bits():
+    with Box() as box:
+        whole = box.run(PULL, *SMALL, "--frames", "8", "--out", box.path("whole"))[1]
+        for stop in (0, 1, 5):
+            part = box.run(PULL, *SMALL, "--frames", str(stop), "--out", box.path(f"part{stop}"))[1]
+            code, again, err = box.run("--resume", part["run_id"], "--frames", str(8 - stop))
+            check(code == 0, f"resume after {stop}: {err}")
+            check(again["state_hash"] == whole["state_hash"] and again["steps"] == whole["steps"], f"resumed after frame {stop}: same bits")
+            check(again["run_id"] == part["run_id"] and again["frames"] == 8, "the same run goes on")
+            check(frames_of(box.path(f"part{stop}")) == frames_of(box.path("whole")), "no frame is missing")
+
+
+def test_interrupt_and_kill():
+    with Box() as box:
+        whole = box.run(PULL, *SMALL, "--frames", "40", "--out", box.path("whole"))[1]
+        for number, name in ((signal.SIGINT, "interrupted"), (signal.SIGKILL, "dead")):
+            process = box.start("run", PULL, *SMALL, "--frames", "40", "--quiet", "--out", box.path(name))
+            while len(frames_of(box.path(name))) < 5 and process.poll() is None:
+                time.sleep(0.01)
+            process.send_signal(number)
+            process.communicate(timeout=60)
+            if number == signal.SIGINT:
+                check(process.returncode == 130, f"Ctrl-C ends in 130, not {process.returncode}")
+            code, out, _ = box.call("runs", "list", "--json")
+            check(code == 0 and "running" not in box.statuses(), f"no run is left as running: {box.statuses()}")
+            check(box.statuses()[-1] == name, f"{name}: {box.statuses()}")
+            run_id = json.loads(out)["runs"][0]["run_id"]
+            done = len(frames_of(box.path(name))) - 1
+            code, again, err = box.run("--resume", run_id)
+            check(code == 0 and again["frames"] == 40, f"{name} after {done} frames goes on to the frames first asked for: {err}")
+            check(again["state_hash"] == whole["state_hash"], f"{name}: same bits as the run that was never stopped")
+
+
+def test_wrong_scenes():
+    with Box() as box:
+        for path in sorted(glob.glob(os.path.join(SOURCE, "tests/cases/wrong/*.lua"))):
+            name = os.path.basename(path)
+            code, out, err = box.call("run", path, "--quiet", "--frames", "1")
+            check(code == 2, f"{name}: exit code {code}, {err.strip()[:200]}")
+            check(re.search(r"(%s|recipes/\w+\.lua):\d+: " % re.escape(name), err), f"{name}: the message names file and line: {err.strip()[:200]}")
+        code, _, err = box.call("run", box.path("no_such_scene.lua"))
+        check(code == 2 and "no_such_scene.lua" in err, f"missing file: {code} {err}")
+        check(box.statuses() == [], f"no row for a scene that is wrong: {box.statuses()}")
+
+
+def test_wrong_while_running():
+    with Box() as box:
+        for path in sorted(glob.glob(os.path.join(SOURCE, "tests/cases/wrong_running/*.lua"))):
+            name = os.path.basename(path)
+            code, _, err = box.call("run", path, "--quiet", "--out", box.path(name))
+            check(code == 2, f"{name}: exit code {code}, {err.strip()[:200]}")
+            check(re.search(re.escape(name) + r":\d+", err), f"{name}: file and line: {err.strip()[:200]}")
+            check(len(frames_of(box.path(name))) >= 1, f"{name}: frames before the trouble are kept")
+        check(set(box.statuses()) <= {"failed"}, f"runs that failed say so: {box.statuses()}")
+
+
+def test_check_says_what_is_wrong():
+    with Box() as box:
+        scene = box.path("typo.lua")
+        with open(scene, "w") as out:
+            out.write('local s = require "sunder"\nreturn s.scene {\n  solids = { { shape = s.sphere { center = {0,0,0}, radius = 1 },\n'
+                      '    material = { density = 1,\n      elastic = { E = 1, nuu = 0.3 } } } } }\n')
+        code, out, _ = box.call("check", scene, "--json")
+        report = json.loads(out)
+        check(code == 2 and report["ok"] is False, "a typo is an error")
+        first = report["errors"][0]
+        check(first["nearest"] == "nu" and first["line"] and "typo.lua" in first["file"], f"file, line and nearest name: {first}")
+        code, out, _ = box.call("check", PULL, "--json")
+        check(code == 0 and json.loads(out) == {"ok": True, "errors": []}, "a right scene is ok")
+        for wrong in (["run"], ["run", PULL, "--frames", "many"], ["run", PULL, "--set", "etta=1"], ["run", PULL, "--precision", "f16"],
+                      ["run", PULL, "--simd", "neon9"], ["rum", PULL], ["runs", "lits"], ["check"], ["run", PULL, "--frobnicate"]):
+            code, _, err = box.call(*wrong)
+            check(code == 2 and err.strip(), f"{wrong}: exit code {code}: {err.strip()[:120]}")
+        check("eta" in box.call("run", PULL, "--set", "etta=1")[2], "--set names the nearest knob")
+
+
+def test_runs_diff_shows_what_differs():
+    with Box() as box:
+        a = box.run(PULL, *SMALL, "--frames", "2")[1]["run_id"]
+        b = box.run(PULL, *SMALL, "--frames", "2", "--set", "eta=0.2")[1]["run_id"]
+        code, out, err = box.call("runs", "diff", a, b)
+        check(code == 0 and "eta" in out, f"eta differs: {out} {err}")
+        for same in ("gamma", "alpha", "nu", "seed", "density"):
+            check(not re.search(rf"\b{same}\b", out), f"'{same}' is equal and not shown")
+        code, out, _ = box.call("runs", "show", a, "--json")
+        check(code == 0 and json.loads(out), "show as JSON")
+        code, out, _ = box.call("runs", "show", "last")
+        check(code == 0 and b in out, "last is the newest")
+        code, _, err = box.call("runs", "show", a[:-1] + "x")
+        check(code == 2, f"an unknown run: {err}")
+        with sqlite3.connect(box.db) as connection:
+            check(connection.execute("SELECT count(*) FROM runs").fetchone()[0] == 2, "the ledger opens as a database")
+
+
+def test_output_is_never_overwritten():
+    with Box() as box:
+        box.run(PULL, *SMALL, "--frames", "2", "--out", box.path("out"))
+        before = os.stat(box.path("out/frames/000002.hdf")).st_mtime_ns
+        code, _, err = box.run(PULL, *SMALL, "--frames", "2", "--out", box.path("out"))
+        check(code == 2 and "out" in err, f"a folder that holds a run is refused: {code} {err}")
+        check(os.stat(box.path("out/frames/000002.hdf")).st_mtime_ns == before, "and nothing in it is touched")
+        code, out, err = box.call("run", PULL, "--frames", "1", "--db", "/dev/null/ledger.db")
+        check(code in (1, 2) and "/dev/null" in err, f"a ledger that cannot be: {code} {err}")
+
+
+def test_render():
+    with Box() as box:
+        run = box.run(PULL, *SMALL, "--frames", "1")[1]["run_id"]
+        code, _, err = box.call("render", run, "--out", box.path("a.png"), "--width", "320", "--height", "200")
+        data = open(box.path("a.png"), "rb").read() if code == 0 else b""
+        check(code == 0 and data[:4] == b"\x89PNG" and len(data) > 2000, f"a picture: {code} {err}")
+
+
+def main():
+    wanted = sys.argv[3:]
+    for name, test in list(globals().items()):
+        if name.startswith("test_") and (not wanted or name in wanted):
+            before = len(failures)
+            test()
+            print("ok  " if len(failures) == before else "FAIL", name, flush=True)
+    print(f"{checks} checks, {len(failures)} failed")
+    sys.exit(1 if failures or not checks else 0)
+
+
+main()

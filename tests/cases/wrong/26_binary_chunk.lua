@@ -1,0 +1,2 @@
+LuaS
+-- expect: 26_binary_chunk.lua:1 found=a_compiled_chunk

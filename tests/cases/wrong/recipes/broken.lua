@@ -1,0 +1,4 @@
+return {
+  density = 1,
+  elastic = { E = "hard" },
+}

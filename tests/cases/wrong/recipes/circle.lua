@@ -1,0 +1,2 @@
+local s = require "sunder"
+return s.recipe "circle"

@@ -1,0 +1,774 @@
+"""Drives the live screen (demo_tui, over a synthetic session) inside tmux and reads what a user would see.
+
+Usage: test_tui.py DEMO [name ...]   Exit codes: 0 passed, 1 failed, 77 skipped (no tmux).
+"""
+import concurrent.futures
+import fcntl
+import os
+import pty
+import random
+import re
+import select
+import shutil
+import signal
+import statistics
+import struct
+import subprocess
+import sys
+import tempfile
+import termios
+import time
+
+PATIENCE = 20.0  # seconds that anything may take on a busy machine
+
+
+class Failure(Exception):
+    pass
+
+
+def check(condition, what):
+    if not condition:
+        raise Failure(what)
+
+
+class Screen:
+    """One demo_tui in a terminal of its own."""
+
+    count = 0
+
+    def __init__(self, arguments="", width=80, height=24, term="xterm-256color", variables="", shell=False):
+        Screen.count += 1
+        self.folder = tempfile.mkdtemp(prefix="sunder-tui-")
+        self.socket = os.path.join(self.folder, "tmux")
+        environment = {k: v for k, v in os.environ.items() if k not in ("TMUX", "NO_COLOR", "COLORFGBG", "LC_ALL")}
+        environment["LC_ALL"] = "C.UTF-8"
+        setting = f"export TERM={term} LC_ALL=C.UTF-8; unset TMUX; {variables}"
+        # Sanitizers handle fatal signals themselves unless told not to.
+        quiet = ":".join(f"handle_{name}=0" for name in ("segv", "abort", "sigbus", "sigfpe", "sigill", "sigtrap"))
+        setting += "".join(f" export {tool}_OPTIONS=${{{tool}_OPTIONS}}:{quiet};" for tool in ("ASAN", "TSAN", "UBSAN"))
+        if shell:
+            command = f"{setting} exec bash --norc --noprofile -i"
+        else:
+            # The trap keeps the shell alive through Ctrl-C, which reaches it as well; exec makes the pid the demo's.
+            command = (f"{setting} ulimit -c 0; trap : INT; stty -g > {self.folder}/before; echo BEFORE; "
+                       f"bash -c 'echo $$ > {self.folder}/pid; exec {DEMO} {arguments}'; "
+                       f"echo \"status $?\"; stty -g > {self.folder}/after; echo END; sleep 1000")
+        self.tmux("-f", "/dev/null", "new-session", "-d", "-x", str(width), "-y", str(height), "bash", "-c", command,
+                  environment=environment)
+        self.tmux("set", "-g", "escape-time", "0")
+        self.tmux("set", "-g", "status", "off")
+        self.resize(width, height)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.tmux("kill-server", fatal=False)
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def tmux(self, *arguments, fatal=True, environment=None):
+        done = subprocess.run(["tmux", "-u", "-S", self.socket, *arguments], capture_output=True, text=True,
+                              env=environment, timeout=PATIENCE)
+        if fatal and done.returncode != 0:
+            raise Failure(f"tmux {arguments[0]}: {done.stderr.strip()}")
+        return done.stdout
+
+    def resize(self, width, height):
+        self.tmux("resize-window", "-x", str(width), "-y", str(height))
+
+    def keys(self, *names):
+        self.tmux("send-keys", *names)
+
+    def type(self, text):
+        self.tmux("send-keys", "-l", text)
+
+    def text(self, colours=False):
+        return self.tmux("capture-pane", "-p", *(["-e"] if colours else []))
+
+    def wait(self, pattern, what=None, absent=False, patience=PATIENCE):
+        """Waits until the screen matches (or no longer matches) the pattern; returns the match."""
+        end = time.monotonic() + patience
+        while True:
+            text = self.text()
+            found = re.search(pattern, text, re.M)
+            if bool(found) != absent:
+                return found
+            if time.monotonic() > end:
+                raise Failure(f"{what or pattern!r} {'stays' if absent else 'does not show'} on:\n{text}")
+            time.sleep(0.03)
+
+    def number(self, pattern):
+        return float(self.wait(pattern).group(1))
+
+    def frame(self):
+        return int(self.number(r"frame +(\d+)/"))
+
+    def pid(self):
+        with open(os.path.join(self.folder, "pid"), encoding="ascii") as file:
+            return int(file.read())
+
+    def running(self):
+        self.wait(r"(running|paused) *$", "the run")
+        self.wait(r"frame +\d+/")
+        return self
+
+    def finished(self, status, outcome=None):
+        """The demo has left with this status, the terminal is as it was, and what was on it before is back."""
+        self.wait(r"^END", "the shell after the screen")
+        self.wait(rf"^status {status}$")
+        if outcome is not None:
+            self.wait(rf"^outcome {outcome}:")
+            self.wait(r"^left 0 bytes")
+        self.restored()
+
+    def restored(self, first_line=True):
+        modes = []
+        for name in ("before", "after"):
+            with open(os.path.join(self.folder, name), encoding="ascii") as file:
+                modes.append(file.read())
+        check(modes[0] == modes[1], f"terminal modes changed: {modes}")
+        check(self.tmux("display", "-p", "#{alternate_on} #{cursor_flag} #{keypad_cursor_flag}").split() ==
+              ["0", "1", "0"], "alternate screen, cursor or keypad mode left on")
+        if first_line:
+            self.wait(r"^BEFORE", "what was on the screen before")
+
+
+def demo(*arguments, **options):
+    return Screen(" ".join(arguments), **options)
+
+
+# ---- every action -----------------------------------------------------------------------------------------------------
+
+LONG = "--frames 5000 --frame-ms 40 --particles 3000"
+ACTIONS = {}
+
+
+def action(name):
+    def register(function):
+        ACTIONS[name] = function
+        return function
+    return register
+
+
+@action("pause")
+def pause(s):
+    s.keys("Space")
+    s.wait(r"paused *$")
+    frame = s.frame()
+    time.sleep(0.3)
+    check(s.frame() == frame, "frames go on while paused")
+    s.keys("Space")
+    s.wait(r"running *$")
+    s.wait(rf"frame +(?!{frame}/)\d+/")
+
+
+@action("step")
+def step(s):
+    s.keys("s")
+    s.wait(r"paused *$")
+    for key in ("s", "."):
+        frame = s.frame()
+        s.keys(key)
+        s.wait(rf"frame +{frame + 1}/")
+        time.sleep(0.2)
+        check(s.frame() == frame + 1, "one key, more than one frame")
+    s.wait(r"paused *$")
+
+
+@action("quit")
+def quit_asks(s):
+    s.keys("q")
+    s.wait(r"Stop the run after this frame\?")
+    s.keys("n")
+    s.wait(r"Stop the run", absent=True)
+    s.wait(r"running *$")
+    s.keys("q")
+    s.wait(r"Stop the run after this frame\?")
+    s.keys("y")
+    s.finished(130, outcome=4)
+
+
+@action("leave")
+def leave(s):
+    s.keys("Q")
+    s.finished(130, outcome=4)
+
+
+@action("help")
+def help_page(s):
+    s.keys("?")
+    s.wait(r"^keys ─")
+    for key in ("?", "q", "Escape"):
+        s.keys(key)
+        s.wait(r"^keys ─", absent=True)
+        s.keys("F1")
+        s.wait(r"^keys ─")
+    s.wait(r"running *$")
+
+
+@action("log")
+def log_page(s):
+    s.keys("g")
+    s.wait(r"printed by libraries")
+    s.wait(r"Nothing so far")
+    s.keys("g")
+    s.wait(r"printed by libraries", absent=True)
+
+
+def turns(key, name, pattern, sign):
+    @action(name)
+    def turn(s):
+        before = s.number(pattern)
+        s.keys(*key[:1])
+        s.wait(pattern.replace(r"([-+]\d+)", rf"\{before:+.0f}\b") + r"(?!\d)", absent=True)
+        after = s.number(pattern)
+        check(6 <= sign * (after - before) <= 9, f"{name}: {before} to {after}")
+        s.keys(*key[1:])
+        s.wait(pattern.replace(r"([-+]\d+)", rf"\{before + sign * 15:+.0f}"))
+
+
+turns(("h", "Left"), "turn-left", r"yaw +([-+]\d+)", -1)
+turns(("l", "Right"), "turn-right", r"yaw +([-+]\d+)", 1)
+turns(("k", "Up"), "tilt-up", r"pitch +([-+]\d+)", 1)
+turns(("j", "Down"), "tilt-down", r"pitch +([-+]\d+)", -1)
+
+
+@action("zoom-in")
+def zoom_in(s):
+    s.keys("+")
+    s.wait(r"zoom +1\.25")
+    s.keys("=")
+    s.wait(r"zoom +1\.56")
+
+
+@action("zoom-out")
+def zoom_out(s):
+    s.keys("-")
+    s.wait(r"zoom +0\.80")
+
+
+@action("reset")
+def reset(s):
+    view = s.wait(r"yaw .* zoom +\S+").group(0)
+    s.keys("l", "k", "+")
+    s.wait(r"zoom +1\.25")
+    s.keys("0")
+    s.wait(re.escape(view))
+
+
+@action("spin")
+def spin(s):
+    s.keys("a")
+    first = s.number(r"yaw +([-+]\d+)")
+    s.wait(rf"yaw +\{first + 6:+.0f}|yaw +\{first + 7:+.0f}")
+    s.keys("a")
+    s.wait("stands still")
+    time.sleep(0.1)
+    still = s.number(r"yaw +([-+]\d+)")
+    time.sleep(0.3)
+    check(s.number(r"yaw +([-+]\d+)") == still, "the camera goes on turning")
+
+
+@action("mode")
+def mode(s):
+    s.wait(r"[\u2801-\u28ff]{4}")
+    s.keys("m")
+    s.wait(r"Particles as blocks")
+    s.wait(r"^[^│]*[▀▄]{4}[^│]*│")
+    s.keys("m")
+    s.wait(r"Particles as ascii")
+    s.wait(r"^[^│]*[-.:=+*#%@]{4}[^│]*│")
+    s.keys("m")
+    s.wait(r"Particles as braille")
+
+
+def picture_colours(s):
+    return set(re.findall(r"38;5;(\d+)", "".join(line.split("│")[0] for line in s.text(True).splitlines()[1:21])))
+
+
+@action("colours")
+def colours(s):
+    seen = [picture_colours(s)]
+    for name in ("lagoon", "civic", "ink", "ember"):
+        s.keys("c")
+        s.wait(f"Colours: {name}")
+        seen.append(picture_colours(s))
+    check(seen[0] != seen[1] and seen[1] != seen[2] and seen[2] != seen[3], f"colour maps look alike: {seen}")
+
+
+@action("theme")
+def theme(s):
+    seen = []
+    for name in ("light", "colour-blind", "dark"):
+        s.keys("t")
+        s.wait(f"Theme: {name}")
+        seen.append(set(re.findall(r"[34]8;5;(\d+)", s.text(True).splitlines()[-1])))
+    check(seen[0] != seen[1] and seen[0] != seen[2], f"themes look alike: {seen}")
+
+
+@action("histogram")
+def histogram(s):
+    s.wait(r"particles by damage ─+ linear")
+    s.keys("L")
+    s.wait(r"particles by damage ─+ log")
+    s.keys("L")
+    s.wait(r"particles by damage ─+ linear")
+
+
+@action("redraw")
+def redraw(s):
+    tty = s.tmux("display", "-p", "#{pane_tty}").strip()
+    s.keys("Space")
+    s.wait(r"paused *$")
+    s.wait(r"Pausing|Going", absent=True)  # the screen rests
+    with open(tty, "w", encoding="ascii") as terminal:
+        terminal.write("\033[10;10HRUBBISH")
+    s.wait("RUBBISH")
+    s.keys("C-l")
+    s.wait("RUBBISH", absent=True)
+    s.wait(r"frame +\d+/")
+
+
+def run_action(name):
+    # A torn tube from the start: damage in every bin, so that colours and bars can be told apart.
+    with demo("--frames 5000 --frame-ms 40 --particles 3000 --torn") as s:
+        ACTIONS[name](s.running())
+
+
+def test_help_page_is_complete():
+    """Every action on the help page has a test here, and the other way round."""
+    with demo(LONG) as s:
+        s.running().keys("?")
+        s.wait(r"^keys ─")
+        lines = s.text().splitlines()[2:22]
+        names = {line.split()[-1] for line in lines if line.strip()}
+        check(names == set(ACTIONS), f"actions without a test or without help: {names ^ set(ACTIONS)}")
+
+
+# ---- sizes ------------------------------------------------------------------------------------------------------------
+
+def test_80x24():
+    with demo(LONG, "--torn --warn") as s:
+        s.running()
+        for word in ("sunder  Tube pull · full", r"20260714-093012-k7f3", r"time +\d\.\d\d/7\.00 s", r"step +\d", r"dt +1\.042e-03",
+                     r"per frame +40\.0 ms", r"left +0:0\d:\d\d", r"particles +3 000", r"elapsed +0:00:\d\d", r"threads +2",
+                     r"kernel +f32 avx2", r"kinetic +\S+e-\d\d", r"elastic +\S+e[-+]\d\d", r"fibre +\S+e[-+]\d\d", r"broken +\d+\.\d+ %",
+                     r"mean +0\.\d{4}", r"largest +[01]\.\d{4}", r"0\.80–1\.00 ", r"space pause.*\? help",
+                     r"the time step fell to a tenth", r"[▂-█]{3}"):
+            s.wait(word)
+        for line in s.text().splitlines():
+            check(len(line) <= 80, f"a line of {len(line)} columns")
+
+
+def test_numbers_are_the_session_s():
+    with demo("--frames 4 --frame-ms 20 --particles 3000 --torn") as s:
+        s.wait(r"done *$")
+        shown = []
+        for label in ("kinetic", "elastic", "fibre", "broken", "mean", "largest"):
+            shown.append(s.wait(rf"{label} +(\d\S*) ").group(1))
+        shares = [float(x) for x in re.findall(r"0–.*?(\d+\.\d+) %", s.text())]
+        check(len(shares) == 5 and abs(sum(shares) - 100) < 0.1, f"shares of the histogram: {shares}")
+        s.keys("q")
+        check(s.wait(r"^last (.*)$").group(1).split() == shown, f"shown: {shown}")
+        s.finished(0, outcome=0)
+
+
+def test_200x60():
+    with demo(LONG, "--torn", width=200, height=60) as s:
+        s.running().wait(r"0\.96–1\.00 ")
+        s.wait(r"work +\d")
+        s.wait(r"effects ─")
+        s.wait(r"elastic  fibres  damage")
+
+
+def test_40x10():
+    with demo(LONG, width=40, height=10) as s:
+        s.wait(r"Tube pull")
+        s.wait(r"frame \d+/5000")
+        s.wait(r"broken ")
+        s.wait(r"space pause")
+        s.keys("?")
+        s.wait(r"^keys ")
+        s.keys(*["j"] * 30)
+        s.wait(r"draw the screen anew")  # the last line of help can be reached
+        s.keys("q", "q")
+        s.wait(r"Stop\?")
+        s.keys("q")
+        s.finished(130, outcome=4)
+
+
+def small(width, height):
+    with demo(LONG, width=width, height=height) as s:
+        time.sleep(0.6)
+        s.wait(r"too small" if width > 9 else r"\S")
+        s.keys("q")
+        time.sleep(0.2)
+        s.keys("y")
+        time.sleep(0.5)
+        s.resize(80, 24)
+        s.finished(130)
+
+
+def test_too_small():
+    small(39, 10)
+
+
+def test_too_low():
+    small(80, 9)
+
+
+def test_1x1():
+    small(1, 1)
+
+
+def test_resize_storm():
+    generator = random.Random(1)
+    with demo(LONG) as s:
+        s.running()
+        for i in range(60):
+            s.resize(*((1, 1) if i % 20 == 7 else (generator.randint(1, 220), generator.randint(1, 70))))
+            if i % 3 == 0:
+                s.keys(generator.choice(["l", "m", "?", "g", "a", "c"]))
+        for page in ("q", "Escape"):
+            s.keys(page)
+        s.keys("n")
+        s.resize(80, 24)
+        s.wait(r"^ sunder  Tube pull")
+        s.keys("Q")
+        s.finished(130, outcome=4)
+
+
+# ---- terminals --------------------------------------------------------------------------------------------------------
+
+COLOUR = r"\033\[[0-9;]*(?:3[0-7]|4[0-7]|9[0-7]|38;5;\d+|48;5;\d+)[;m]"
+
+
+def test_256_colours():
+    with demo(LONG, "--torn") as s:
+        s.running().wait(r"[\u2801-\u28ff]{4}")
+        check(len(picture_colours(s)) >= 4, "hardly any colours in the picture")
+
+
+def test_no_color():
+    with demo(LONG, "--torn", variables="export NO_COLOR=1;") as s:
+        s.running().wait(r"[\u2801-\u28ff]{2}")
+        check(not re.search(COLOUR, s.text(True)), "colours under NO_COLOR")
+        s.keys("c")
+        s.wait(r"this terminal shows none")
+
+
+def test_vt100():
+    with demo(LONG, "--torn", term="vt100") as s:
+        s.running().wait(r"[\u2801-\u28ff]{2}")
+        check(not re.search(COLOUR, s.text(True)), "colours on a vt100")
+        s.keys("q", "q")
+        s.wait(r"^END")
+        s.wait(r"^status 130")
+        s.restored(first_line=False)  # a vt100 has no second screen to come back from
+
+
+def test_8_colours():
+    with demo(LONG, "--torn", term="xterm") as s:
+        s.running()
+        text = s.text(True)
+        check(re.search(COLOUR, text) and not re.search(r"[34]8;5;", text), "not 8 colours")
+
+
+def test_ascii():
+    for variables, options in (("export LC_ALL=C;", ""), ("", "--ascii")):
+        with demo(LONG, "--torn", options, variables=variables) as s:
+            s.running().wait(r"^[^|]*[-.:=+*#%@]{4}[^|]*\|")
+            s.keys("m")
+            s.wait(r"Only ASCII")
+            check(s.text().isascii(), "beyond ASCII")
+
+
+def test_light_background_is_noticed():
+    bars = []
+    for hint in ("15;0", "0;15"):
+        with demo(LONG, variables=f"export COLORFGBG='{hint}';") as s:
+            s.running()
+            bars.append(set(re.findall(r"48;5;(\d+)", s.text(True))))
+    check(bars[0] != bars[1], "COLORFGBG changes nothing")
+
+
+def test_dumb_and_unknown_terminals_are_refused():
+    for term, why in (("dumb", 'TERM is "dumb"'), ("nosuchterm", "no terminfo entry"), ("''", "TERM is not set")):
+        with demo(LONG, term=term) as s:
+            s.wait(rf"impossible: .*{why}")
+            s.wait(r"^status 3")
+    done = subprocess.run([DEMO], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=PATIENCE)
+    check(done.returncode == 3 and "standard input is not a terminal" in done.stdout, done.stdout)
+
+
+# ---- leaving ----------------------------------------------------------------------------------------------------------
+
+def test_end_stays_until_q():
+    with demo("--frames 5 --frame-ms 20 --particles 500") as s:
+        s.wait(r"done *$")
+        s.wait(r"Done\. Frames are in runs/")
+        s.wait(r"100 %")
+        time.sleep(0.3)
+        s.wait(r"done *$")
+        s.keys("q")
+        s.finished(0, outcome=0)
+
+
+def test_leave_at_end():
+    with demo("--frames 5 --frame-ms 20 --particles 500 --leave") as s:
+        s.finished(0, outcome=0)
+
+
+def test_failure_is_told():
+    with demo("--frames 50 --frame-ms 20 --particles 500 --fail-at 8") as s:
+        s.wait(r"failed *$")
+        s.wait(r"diverged at step 313: particle 1234")
+        s.keys("q")
+        s.finished(1, outcome=1)
+
+
+def test_ctrl_c_finishes_the_frame():
+    with demo("--frames 500 --frame-ms 1500 --particles 500") as s:
+        s.running().keys("C-c")
+        s.wait(r"stopping *$")
+        s.wait(r"Finishing the frame")
+        s.finished(130, outcome=4)
+
+
+def test_second_ctrl_c_abandons_it():
+    with demo("--frames 500 --frame-ms 60000 --particles 500") as s:
+        s.running().keys("C-c")
+        s.wait(r"stopping *$")
+        start = time.monotonic()
+        s.keys("C-c")
+        s.finished(130, outcome=4)
+        check(time.monotonic() - start < 15, "the frame was waited for")
+
+
+def test_ctrl_c_while_paused_and_at_the_end():
+    with demo(LONG, "--paused") as s:
+        s.wait(r"paused *$")
+        s.keys("C-c")
+        s.finished(130, outcome=4)
+    with demo("--frames 3 --frame-ms 10 --particles 500") as s:
+        s.wait(r"done *$")
+        s.keys("C-c")
+        s.finished(0, outcome=0)
+
+
+def soft_signal(number):
+    with demo(LONG) as s:
+        s.running()
+        os.kill(s.pid(), number)
+        s.finished(130, outcome=4)
+
+
+def test_sigterm():
+    soft_signal(signal.SIGTERM)
+
+
+def test_sighup():
+    soft_signal(signal.SIGHUP)
+
+
+def test_terminal_that_goes_away():
+    """The terminal closes: the run is stopped properly and the process ends."""
+    with demo("--frames 5000 --frame-ms 20 --particles 500") as s:
+        pid = s.running().pid()
+        s.tmux("kill-server", fatal=False)
+        end = time.monotonic() + PATIENCE
+        while os.path.exists(f"/proc/{pid}"):
+            check(time.monotonic() < end, "the process outlives its terminal")
+            time.sleep(0.05)
+
+
+def test_exit_from_elsewhere():
+    with demo(LONG, "--exit-after 500") as s:
+        s.finished(7)
+
+
+def test_suspend_and_come_back():
+    with Screen(shell=True) as s:
+        s.type(f"PS1='ready> '; clear; stty -g > {s.folder}/first; {DEMO} {LONG}; stty -g > {s.folder}/after\n")
+        s.running().keys("C-z")
+        s.wait(r"Stopped")
+        s.wait(r"^ready>")
+        s.type(f"stty -g > {s.folder}/before; echo saved\n")
+        s.wait(r"^saved")
+        with open(os.path.join(s.folder, "first"), encoding="ascii") as file:
+            first = file.read()
+        with open(os.path.join(s.folder, "before"), encoding="ascii") as file:
+            check(file.read() == first, "terminal modes differ while stopped")
+        s.resize(100, 30)
+        s.type("fg\n")
+        s.running()
+        s.wait(r"^ sunder  Tube pull")
+        frame = s.frame()
+        s.wait(rf"frame +(?!{frame}/)\d+/")
+        s.keys("Q")
+        s.wait(r"^outcome 4:")
+        s.type(f"stty -g > {s.folder}/after; echo over\n")
+        s.wait(r"^over")
+        s.restored(first_line=False)
+
+
+def test_stop_that_cannot_be_caught():
+    """SIGSTOP, rubbish on the screen, SIGCONT: all is drawn anew."""
+    with demo(LONG) as s:
+        pid = s.running().pid()
+        tty = s.tmux("display", "-p", "#{pane_tty}").strip()
+        os.kill(pid, signal.SIGSTOP)
+        with open(tty, "w", encoding="ascii") as terminal:
+            terminal.write("\033[2J\033[5;5HRUBBISH")
+        s.wait("RUBBISH")
+        os.kill(pid, signal.SIGCONT)
+        s.wait("RUBBISH", absent=True)
+        s.wait(r"^ sunder  Tube pull")
+
+
+def fatal(number):
+    # In the simulating thread, with something printed just before.
+    with demo(f"{LONG} --print --crash-at 6 {number}") as s:
+        s.wait(r"^END")
+        s.wait(rf"^status {128 + number}$")
+        s.wait(r"library: a complaint about frame 6")
+        s.restored(first_line=False)
+    # In whatever thread the kernel chooses.
+    with demo(LONG) as s:
+        s.running()
+        os.kill(s.pid(), number)
+        s.finished(128 + number)
+
+
+# ---- manners ----------------------------------------------------------------------------------------------------------
+
+def test_printed_text_stays_off_the_screen():
+    with demo(LONG, "--print") as s:
+        s.running().wait(r"frame +[1-9]\d*/")
+        s.wait("A library has printed something")
+        check("library:" not in s.text(), "printed text on the screen")
+        s.keys("g")
+        s.wait(r"library: a complaint about frame \d+")
+        s.wait(r"library: standard output, frame \d+")
+        last = int(re.findall(r"complaint about frame (\d+)", s.text())[-1])
+        s.wait(rf"complaint about frame {last + 5}")  # the page follows
+        s.keys("q", "Q")
+        s.wait(r"^library: standard output, frame \d+")
+        s.wait(r"^status 130")
+
+
+def test_scene_without_damage():
+    with demo(LONG, "--undamaged") as s:
+        s.running().wait("this scene does not damage anything")
+        check("particles by damage" not in s.text(), "a histogram of nothing")
+
+
+class Raw:
+    """The demo on a bare pseudo-terminal: for timing, without tmux between."""
+
+    def __init__(self, arguments, width=80, height=24):
+        self.pid, self.descriptor = pty.fork()
+        if self.pid == 0:
+            os.environ.update(TERM="xterm-256color", LC_ALL="C.UTF-8")
+            os.environ.pop("NO_COLOR", None)
+            fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack("HHHH", height, width, 0, 0))
+            os.execv(DEMO, [DEMO, *arguments.split()])
+
+    def read(self, seconds):
+        ready, _, _ = select.select([self.descriptor], [], [], seconds)
+        return os.read(self.descriptor, 65536) if ready else b""
+
+    def settle(self, quiet):
+        end = time.monotonic() + PATIENCE
+        while self.read(quiet):
+            check(time.monotonic() < end, "the screen never rests")
+
+    def close(self):
+        os.kill(self.pid, signal.SIGKILL)
+        os.waitpid(self.pid, 0)
+        os.close(self.descriptor)
+
+
+def test_keys_are_answered_at_once():
+    raw = Raw("--paused --frames 50 --particles 50000")
+    try:
+        raw.settle(0.5)
+        delays = []
+        for key in b"lhlhlhlhlhl":
+            start = time.monotonic()
+            os.write(raw.descriptor, bytes([key]))
+            check(raw.read(PATIENCE), "no answer to a key")
+            delays.append(time.monotonic() - start)
+            raw.settle(0.15)
+        print(f"  a key is answered after {1e3 * statistics.median(delays):.1f} ms (median), {1e3 * max(delays):.1f} ms (worst)")
+        check(statistics.median(delays) < 0.05, f"keys wait {delays}")
+    finally:
+        raw.close()
+
+
+def test_nothing_is_drawn_while_nothing_changes():
+    raw = Raw("--paused --frames 50 --particles 2000")
+    try:
+        raw.settle(0.5)
+        check(raw.read(2.0) == b"", "a resting screen is redrawn")
+    finally:
+        raw.close()
+
+
+def test_at_most_30_redraws_a_second():
+    raw = Raw("--frames 100000 --frame-ms 2 --particles 200")
+    try:
+        raw.read(PATIENCE)
+        bursts, last, end = 0, 0.0, time.monotonic() + 2
+        while time.monotonic() < end:
+            if raw.read(0.1):
+                now = time.monotonic()
+                bursts += now - last > 0.012  # parts of one redraw arrive closer together
+                last = now
+        print(f"  {bursts / 2:.0f} redraws a second")
+        check(10 <= bursts <= 66, f"{bursts} redraws in 2 s")
+    finally:
+        raw.close()
+
+
+# ---- running them -----------------------------------------------------------------------------------------------------
+
+def collect():
+    tests = {name: function for name, function in globals().items() if name.startswith("test_")}
+    for name in ACTIONS:
+        tests[f"action_{name}"] = lambda name=name: run_action(name)
+    for name in ("SEGV", "ABRT", "BUS", "FPE", "ILL", "QUIT", "TRAP", "SYS", "XCPU"):
+        number = getattr(signal, "SIG" + name)
+        tests[f"fatal_{name}"] = lambda number=number: fatal(int(number))
+    return tests
+
+
+def run(name, function):
+    try:
+        function()
+        return name, None
+    except (Failure, OSError, subprocess.TimeoutExpired) as problem:
+        return name, str(problem) or repr(problem)
+
+
+def main():
+    if not shutil.which("tmux"):
+        print("skipped: tmux is not installed")
+        return 77
+    tests = collect()
+    chosen = sys.argv[2:] or list(tests)
+    # Timings first and alone: they must not wait for other tests.
+    timed = [n for n in chosen if n in ("test_keys_are_answered_at_once", "test_at_most_30_redraws_a_second")]
+    results = [run(n, tests[n]) for n in timed]
+    with concurrent.futures.ThreadPoolExecutor(4) as pool:
+        results += pool.map(lambda n: run(n, tests[n]), [n for n in chosen if n not in timed])
+    for name, problem in results:
+        print(f"FAIL {name}: {problem}" if problem else f"ok   {name}")
+    failed = sum(problem is not None for _, problem in results)
+    print(f"{len(results)} tests, {failed} failed")
+    return 1 if failed or not results else 0
+
+
+if __name__ == "__main__":
+    DEMO = os.path.abspath(sys.argv[1])
+    sys.exit(main())

@@ -62,13 +62,19 @@ bool guard_may_go_on(guard *g, size_t work) {
     return g->reason == GUARD_FINE;
 }
 
+/* Says no. Lua tries again after a collection, and unwinding may ask for memory too: the first place of a series stands. */
+static void refuse(guard *g, guard_reason reason) {
+    if (!g->refusing) note_place(g);
+    g->refusing = true;
+    g->refused = reason;
+}
+
 /* Strings are told by the kind that Lua gives instead of an old size. */
 static bool string_fits(guard *g, size_t size) {
     if (size <= LONG_STRING) return true;
     if (g->L && g->reason == GUARD_FINE) lua_sethook(g->L, on_count, LUA_MASKCOUNT, HOOK_PERIOD_SHORT);
     if (size <= GUARD_STRING_LIMIT) return true;
-    g->refused = GUARD_STRING;
-    note_place(g);
+    refuse(g, GUARD_STRING);
     return false;
 }
 
@@ -82,8 +88,7 @@ static bool may_grow(guard *g, size_t more) {
         return false;
     }
     if (fits) return true;
-    g->refused = GUARD_MEMORY;
-    note_place(g);
+    refuse(g, GUARD_MEMORY);
     return false;
 }
 
@@ -100,9 +105,10 @@ void *guard_allocate(void *context, void *block, size_t old_size, size_t new_siz
     if (wanted < new_size || (wanted > held && !may_grow(g, wanted - held))) return NULL;
     void *fresh = block ? memory_resize(block, held, wanted) : memory_allocate(wanted);
     if (!fresh) {
-        g->refused = GUARD_SYSTEM;
+        refuse(g, GUARD_SYSTEM);
         return NULL;
     }
+    if (wanted > held) g->refusing = false;
     g->used = g->used - held + wanted;
     return fresh;
 }

@@ -31,6 +31,7 @@ typedef struct guard {
     size_t unlooked;     /* bytes asked for since the last look */
     size_t unspent;      /* work told to guard_spend since the last look */
     guard_reason refused; /* why the allocator last said no */
+    bool refusing;        /* it has not said yes since */
     guard_reason reason;  /* sticky: why the script was stopped */
     char file[256];       /* where it was stopped, empty if unknown */
     int line;

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static int check_failures;
@@ -30,6 +31,26 @@ static int check_count;
                    check_e, check_t);                                                                                  \
         }                                                                                                              \
     } while (0)
+
+/* A row of docs/verification.md: what was set up, what theory says, what came out. `measured` must lie within `tolerance` of
+ * `expected`; for errors and drifts expected is 0. With SUNDER_VERIFICATION set the row is appended to that file. */
+#define CHECK_ROW(source, set_up, expected, measured, tolerance)                                                       \
+    check_row(__FILE__, __LINE__, source, set_up, expected, measured, tolerance)
+
+static inline void check_row(const char *file, int line, const char *source, const char *set_up, double expected,
+                             double measured, double tolerance) {
+    bool good = fabs(measured - expected) <= tolerance;
+    check_count++;
+    if (!good) {
+        check_failures++;
+        printf("  %s:%d: failed: %s: %.6g, expected %.6g within %.3g\n", file, line, set_up, measured, expected, tolerance);
+    }
+    const char *path = getenv("SUNDER_VERIFICATION");
+    FILE *out = path ? fopen(path, "a") : NULL;
+    if (!out) return;
+    fprintf(out, "| %s | %s | %.6g | %.6g | %.3g | %s |\n", source, set_up, expected, measured, tolerance, good ? "holds" : "FAILS");
+    fclose(out);
+}
 
 #define RUN(test)                                                                                                      \
     do {                                                                                                               \

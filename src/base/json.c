@@ -165,8 +165,9 @@ void json_format_number(double value, char text[JSON_NUMBER]) {
         snprintf(text, JSON_NUMBER, "null");
         return;
     }
-    for (int digits = 15; digits <= 17; digits++) {
-        snprintf(text, JSON_NUMBER, "%.*g", digits, value);
+    static const char *const formats[] = {"%.15g", "%.16g", "%.17g"};
+    for (int i = 0; i < 3; i++) {
+        snprintf(text, JSON_NUMBER, formats[i], value);
         if (strtod(text, NULL) == value) break;
     }
     /* A workbench that has called setlocale may write a comma, or more than one byte, for the point. */

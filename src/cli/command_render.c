@@ -13,13 +13,14 @@
 
 typedef struct render_options {
     const char *run, *database, *out, *colour;
-    long frame, width, height, yaw, pitch;
+    long frame, width, height, yaw, pitch, zoom;
 } render_options;
 
 static const struct option long_options[] = {
     {"frame", required_argument, NULL, 'f'}, {"out", required_argument, NULL, 'o'},    {"db", required_argument, NULL, 'd'},
     {"width", required_argument, NULL, 'w'}, {"height", required_argument, NULL, 'h'}, {"colour", required_argument, NULL, 'c'},
-    {"yaw", required_argument, NULL, 'y'},   {"pitch", required_argument, NULL, 'p'},  {NULL, 0, NULL, 0}};
+    {"yaw", required_argument, NULL, 'y'},   {"pitch", required_argument, NULL, 'p'},  {"zoom", required_argument, NULL, 'z'},
+    {NULL, 0, NULL, 0}};
 
 static int parse(render_options *o, int count, char **arguments) {
     int option, code = 0;
@@ -33,6 +34,7 @@ static int parse(render_options *o, int count, char **arguments) {
         case 'h': code = cli_number("render", "--height", optarg, 16, 8192, &o->height); break;
         case 'y': code = cli_number("render", "--yaw", optarg, -360, 360, &o->yaw); break;
         case 'p': code = cli_number("render", "--pitch", optarg, -90, 90, &o->pitch); break;
+        case 'z': code = cli_number("render", "--zoom", optarg, 10, 10000, &o->zoom); break;
         default: return cli_usage("render", "wrong option");
         }
         if (code) return code;
@@ -68,21 +70,33 @@ static void free_floats(float *values, const record *item) {
     if (values) memory_free(values, (size_t)item->count * (size_t)item->components * sizeof *values);
 }
 
-/* The first frame's bounds hold the camera still over all frames of a run. */
-static status fit_camera(const char *folder, view_camera *camera, report *r) {
-    record_list first = {0};
-    double time;
-    int64_t step;
-    status code = frame_read(folder, 0, &first, &time, &step, r);
-    const record *position = code == STATUS_OK ? record_find(&first, "solid/position") : NULL;
-    float *points = as_floats(position), low[3], high[3];
-    if (points) {
-        view_bounds(points, position->count, low, high);
-        view_camera_fit(camera, low, high);
-    }
+/* Widens the box by a frame's particles. */
+static void widen(const record_list *records, float low[3], float high[3]) {
+    const record *position = record_find(records, "solid/position");
+    float *points = as_floats(position), here_low[3], here_high[3];
+    if (points && view_bounds(points, position->count, here_low, here_high) > 0)
+        for (int c = 0; c < 3; c++) {
+            low[c] = fminf(low[c], here_low[c]);
+            high[c] = fmaxf(high[c], here_high[c]);
+        }
     free_floats(points, position);
-    record_clear(&first);
-    return code;
+}
+
+/* The camera holds the first frame and the one that is drawn: what has not moved stays in its place from picture to picture. */
+static status fit_camera(const char *folder, int64_t frame, view_camera *camera, report *r) {
+    float low[3] = {HUGE_VALF, HUGE_VALF, HUGE_VALF}, high[3] = {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
+    const int64_t frames[2] = {0, frame};
+    for (int i = 0; i < 2; i++) {
+        record_list records = {0};
+        double time;
+        int64_t step;
+        status code = frame_read(folder, frames[i], &records, &time, &step, r);
+        if (code == STATUS_OK) widen(&records, low, high);
+        record_clear(&records);
+        if (code != STATUS_OK) return code;
+    }
+    view_camera_fit(camera, low, high);
+    return STATUS_OK;
 }
 
 static status draw(const render_options *o, const record_list *records, view_render_options *look, report *r) {
@@ -103,7 +117,7 @@ static status draw(const render_options *o, const record_list *records, view_ren
 }
 
 int command_render(int count, char **arguments) {
-    render_options o = {.frame = -1, .out = "sunder.png", .width = 1280, .height = 720, .yaw = 25, .pitch = 20};
+    render_options o = {.frame = -1, .out = "sunder.png", .width = 1280, .height = 720, .yaw = 25, .pitch = 20, .zoom = 100};
     int result = parse(&o, count, arguments);
     if (result) return result;
     char folder[1024];
@@ -116,9 +130,10 @@ int command_render(int count, char **arguments) {
     look.height = (int)o.height;
     look.camera.yaw = (float)((double)o.yaw * M_PI / 180);
     look.camera.pitch = (float)((double)o.pitch * M_PI / 180);
+    look.camera.zoom = (float)o.zoom / 100;
     status code = find_folder(&o, folder, sizeof folder, &r);
     int64_t frame = code == STATUS_OK && o.frame < 0 ? frame_last(folder) : o.frame;
-    if (code == STATUS_OK) code = fit_camera(folder, &look.camera, &r);
+    if (code == STATUS_OK) code = fit_camera(folder, frame, &look.camera, &r);
     if (code == STATUS_OK) code = frame_read(folder, frame, &records, &time, &step, &r);
     if (code == STATUS_OK) code = draw(&o, &records, &look, &r);
     record_clear(&records);

@@ -14,7 +14,7 @@ static const command commands[] = {
     {"check", "check SCENE [--set KEY=VALUE]… [--recipe NAME] [--json]", "validate a scene without running it", command_check},
     {"explain", "explain SCENE [--set KEY=VALUE]… [--json]", "show the plan: effects, fields, bytes, step limits, cost", command_explain},
     {"runs", "runs list | show RUN | diff RUN RUN [--db FILE] [--json]", "ask the ledger about past runs", command_runs},
-    {"render", "render RUN [--frame N] [--out FILE.png] [--width N] [--height N] [--yaw D] [--pitch D]", "draw a frame", command_render},
+    {"render", "render RUN [--frame N] [--out FILE.png] [--width N] [--height N] [--yaw D] [--pitch D] [--zoom PERCENT]", "draw a frame", command_render},
     {"doctor", "doctor [--json]", "say what this machine and this build can do", command_doctor},
     {"help", "help", "list the commands", command_help},
 };

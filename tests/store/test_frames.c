@@ -229,6 +229,14 @@ static void the_series_follows_the_files(void) {
     write_solid_frame(run, 3, 6);
     write_solid_frame(run, 3, 3); /* a gap, filled out of order */
     CHECK(series_is(path, SERIES(LINE0 ",\n" LINE3 ",\n" LINE6)));
+    record_list list;
+    report r;
+    frame_header header = header_of(3);
+    header.time = 0.5;
+    fill_solid(&list, 3, 3);
+    CHECK(frame_write(run, &header, &list, 1, &r) == STATUS_OK); /* the same frame, at another time */
+    record_clear(&list);
+    CHECK(series_is(path, SERIES(LINE0 ",\n    {\"name\": \"000003.hdf\", \"time\": 0.5},\n" LINE6)));
     remove(in_scratch("series/frames/000003.hdf")); /* a frame that someone took away */
     write_solid_frame(run, 3, 6);
     CHECK(series_is(path, SERIES(LINE0 ",\n" LINE6)));

@@ -283,7 +283,7 @@ static void queries_only_read(void) {
     printed p;
     ledger *l = three_runs("sql.db", ids);
     static const char *const bad[] = {"DELETE FROM runs", "SELECT 1; SELECT 2", "", "SELEC 1", "PRAGMA user_version = 7", "BEGIN",
-                                      "DROP VIEW runs_view", "WITH x AS (SELECT 1) DELETE FROM runs"};
+                                      "DROP VIEW runs_view", "WITH x AS (SELECT 1) DELETE FROM runs", "DELETE FROM runs RETURNING id"};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         PRINT(p, ledger_print_sql(l, out, false, bad[i], NULL, 0, &r));
         CHECK(p.s == STATUS_INPUT);

@@ -64,7 +64,11 @@ class Screen:
 
     def __exit__(self, *_):
         self.tmux("kill-server", fatal=False)
-        shutil.rmtree(self.folder, ignore_errors=True)
+        for _ in range(20):  # a dying shell may still write a file into it
+            shutil.rmtree(self.folder, ignore_errors=True)
+            if not os.path.exists(self.folder):
+                break
+            time.sleep(0.05)
 
     def tmux(self, *arguments, fatal=True, environment=None):
         done = subprocess.run(["tmux", "-u", "-S", self.socket, *arguments], capture_output=True, text=True,

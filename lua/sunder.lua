@@ -3,9 +3,9 @@
 ---     local s = require "sunder"
 ---     return s.scene { solids = { { shape = s.sphere { radius = 1 }, material = s.recipe "tube" } } }
 ---
---- This file is the module itself (it is compiled into the program) and, through its annotations, what an editor with the
---- Lua language server shows while a scene is being written. `core` is the C side: it checks every value, names the line of
---- what is wrong, and knows all effects from their tables (`sunder explain SCENE` lists them).
+--- This file is the module itself (it is compiled into the program) and, through its annotations, what an editor with
+--- the Lua language server shows while a scene is being written. `core` is the C side: it checks every value, names
+--- the line of what is wrong, and knows all effects from their tables (`sunder explain SCENE` lists them).
 
 local core = ...
 local pairs, type = pairs, type
@@ -26,8 +26,8 @@ local s = {}
 ---@field min? number
 ---@field max? number
 
---- Declares the knobs of a scene and gives their values: the defaults, or what `--set NAME=VALUE` says. The names particles,
---- duration, fps, dx, dt, seed and cfl act on the scene without being said again.
+--- Declares the knobs of a scene and gives their values: the defaults, or what `--set NAME=VALUE` says. The names
+--- particles, duration, fps, dx, dt, seed and cfl act on the scene without being said again.
 ---@param declared table<string, number|string|boolean|Parameter|Choice>
 ---@return table<string, any>  read-only; a name that was not declared is an error
 function s.params(declared)
@@ -45,7 +45,8 @@ end
 
 -- The scene -----------------------------------------------------------------------------------------------------------
 
---- A material says its density and names the effects that it has. `false` leaves an effect out, `true` takes its defaults.
+--- A material says its density and names the effects that it has. `false` leaves an effect out, `true` takes its
+--- defaults.
 ---@class Material
 ---@field density number
 ---@field name? string
@@ -118,8 +119,8 @@ function s.scene(scene)
   return core.scene(scene)
 end
 
---- A material from recipes/NAME.lua (beside the scene, in a folder above it, or in $SUNDER_RECIPES; a name that ends in .lua
---- is a path from the scene). Overrides replace single keys; `effect = false` turns an effect off.
+--- A material from recipes/NAME.lua (beside the scene, in a folder above it, or in $SUNDER_RECIPES; a name that ends
+--- in .lua is a path from the scene). Overrides replace single keys; `effect = false` turns an effect off.
 ---
 ---     s.recipe("tube", { damage = { eta = 0.1 }, fibres = false })
 ---@param name string
@@ -230,8 +231,8 @@ function s.translate(shape, vector)
   return core.translate(shape, vector)
 end
 
---- Turns a shape by `angle` degrees around an axis through `center` (the origin if absent), counter-clockwise as seen from
---- where the axis points to.
+--- Turns a shape by `angle` degrees around an axis through `center` (the origin if absent), counter-clockwise as seen
+--- from where the axis points to.
 ---@param shape Shape
 ---@param turn { axis: Axis, angle: number, center?: Vector }
 ---@return Shape

@@ -9,8 +9,8 @@
 --   isotropic     everywhere      plain           it crumbles without a direction                    (c)
 --   elastic_only  none            with fibres     it folds, and breaks only by numerical accident    (d)
 --
--- Our choices beside the measures: the floor holds the foot (sticky), as the authors' colliders do; the crusher only pushes,
--- with some friction, so that the rim may spread below it. After 1.2 s it stays where it is.
+-- Our choices beside the measures: the floor holds the foot (sticky), as the authors' colliders do; the crusher only
+-- pushes, with some friction, so that the rim may spread below it. After 1.2 s it stays where it is.
 local s = require "sunder"
 
 local p = s.params {

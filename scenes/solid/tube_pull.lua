@@ -1,7 +1,8 @@
 -- Tube pull: a tube with fibres at 45 degrees, pulled at both ends until it tears.
 --
--- Source: AnisoMPM (Wolper et al. 2020), Fig. 2 and Table 1, and the values of the authors' published scene. What the paper
--- shows with it: only anisotropic damage together with anisotropic elasticity gives a tear that follows the fibres cleanly.
+-- Source: AnisoMPM (Wolper et al. 2020), Fig. 2 and Table 1, and the values of the authors' published scene. What the
+-- paper shows with it: only anisotropic damage together with anisotropic elasticity gives a tear that follows the
+-- fibres cleanly.
 --
 --   variant       damage          elasticity      what to look for
 --   full          along fibres    with fibres     a clean tear that winds along the fibres           (a)

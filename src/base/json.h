@@ -1,8 +1,8 @@
 /* A small JSON writer: text grows in memory, so that a half-made object is never seen by anyone.
  *
- * Commas and indentation are the writer's business. Strings are escaped and made valid UTF-8 (a bad byte becomes U+FFFD);
- * doubles are written with 15 to 17 digits, as few as read back to the same bits, whatever the locale; NaN and ±∞, which
- * JSON lacks, become null. Trouble (out of memory) is remembered and told once, by json_finish. */
+ * Commas and indentation are the writer's business. Strings are escaped and made valid UTF-8 (a bad byte becomes
+ * U+FFFD); doubles are written with 15 to 17 digits, as few as read back to the same bits, whatever the locale; NaN and
+ * ±∞, which JSON lacks, become null. Trouble (out of memory) is remembered and told once, by json_finish. */
 #ifndef SUNDER_BASE_JSON_H
 #define SUNDER_BASE_JSON_H
 
@@ -14,10 +14,10 @@
 enum { JSON_DEPTH = 32, JSON_NUMBER = 40 };
 
 typedef struct json_writer {
-    char *text;             /* NUL-terminated once json_finish has said STATUS_OK */
-    size_t size, capacity;  /* bytes used, bytes allocated */
-    int indent;             /* spaces a level; 0: everything on one line */
-    int depth;              /* open objects and arrays */
+    char *text;                  /* NUL-terminated once json_finish has said STATUS_OK */
+    size_t size, capacity;       /* bytes used, bytes allocated */
+    int indent;                  /* spaces a level; 0: everything on one line */
+    int depth;                   /* open objects and arrays */
     bool filled[JSON_DEPTH + 1]; /* whether the value at this depth has had a member */
     bool after_key;
     bool out_of_memory;
@@ -55,7 +55,8 @@ void json_member_boolean(json_writer *w, const char *name, bool value);
 /* Ends the text: everything opened must be closed. STATUS_SYSTEM when memory ran out on the way. */
 status json_finish(json_writer *w, report *r);
 
-/* Writes the first of 15, 16 and 17 significant digits that read back to `value` exactly; "null" when it is not finite. */
+/* Writes the first of 15, 16 and 17 significant digits that read back to `value` exactly; "null" when it is not finite.
+ */
 void json_format_number(double value, char text[JSON_NUMBER]);
 
 #endif

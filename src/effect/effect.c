@@ -9,6 +9,10 @@ int effect_parameter(const effect *e, const char *key) {
     return -1;
 }
 
+bool effect_supplies(const effect *e, const char *need) {
+    return strcmp(e->name, need) == 0 || (e->provides && strcmp(e->provides, need) == 0);
+}
+
 void effect_values_default(const effect *e, effect_values *values) {
     memset(values, 0, sizeof *values);
     for (int i = 0; i < e->parameter_count; i++)

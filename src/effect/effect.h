@@ -77,12 +77,17 @@ typedef struct effect {
     /* Fills in twins and checks values against each other. `all` has shape [effect count]: the material's other effects
      * may be read (σc depends on E and ν). NULL when there is nothing to do. */
     status (*resolve)(effect_values *own, const effect_values *all, report *r);
-    const char *needs; /* the name of an effect that must be on beside this one, or NULL */
+    const char *provides; /* what others may need of it where several effects are alternatives ("elasticity"), or NULL; a material
+                           * has at most one that provides the same */
+    const char *needs;    /* an effect, by name or by what it provides, that must be on beside this one; or NULL */
     const struct solid_stages *stages; /* what runs; NULL in effects whose work is the engine's own */
 } effect;
 
 /* The index of a parameter in its effect, or -1. */
 int effect_parameter(const effect *e, const char *key);
+
+/* Whether an effect answers a need: by its name or by what it provides. */
+bool effect_supplies(const effect *e, const char *need);
 
 /* Sets every value to its default and clears `given`. */
 void effect_values_default(const effect *e, effect_values *values);

@@ -94,6 +94,14 @@ const shape *shape_half_space(arena *a, const double point[3], const double norm
     return s;
 }
 
+const shape *shape_mesh(arena *a, const mesh *m, const char *name) {
+    shape *s = new_node(a, SHAPE_MESH);
+    if (!s) return NULL;
+    s->mesh.solid = mesh_solid_create(a, m);
+    s->mesh.name = arena_copy_string(a, name);
+    return s->mesh.solid && s->mesh.name ? s : NULL;
+}
+
 /* ---- trees --------------------------------------------------------------------------------------------------------
  */
 

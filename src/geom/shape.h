@@ -9,6 +9,7 @@
 #define SUNDER_GEOM_SHAPE_H
 
 #include "base/memory.h"
+#include "geom/mesh.h"
 
 #include <stdbool.h>
 
@@ -34,6 +35,10 @@ const shape *shape_torus(arena *a, const double center[3], const double axis[3],
 /* Everything with normal·(x − point) < 0. Unbounded: shape_bounds gives ±HUGE_VAL, but for the side that it closes when
  * its normal is a coordinate axis. */
 const shape *shape_half_space(arena *a, const double point[3], const double normal[3]);
+/* The inside of a mesh that mesh_make_solid has accepted; the mesh and its name (for shape_describe) are copied into the
+ * arena. Pieces that overlap are one solid, of which the distance inside is a bound; a piece turned inward within
+ * another is a cavity. */
+const shape *shape_mesh(arena *a, const mesh *m, const char *name);
 /* children has shape [count], count ≥ 1; copied into the arena. */
 const shape *shape_union(arena *a, const shape *const *children, int count);
 const shape *shape_intersection(arena *a, const shape *const *children, int count);

@@ -70,6 +70,7 @@ static double support(const shape *s, const double direction[3]) {
         return vector_dot(s->torus.center, direction) + s->torus.major * sine(s->torus.axis, direction) +
                s->torus.minor;
     case SHAPE_HALF_SPACE: return half_space_support(s, direction);
+    case SHAPE_MESH: return mesh_solid_support(s->mesh.solid, direction);
     case SHAPE_UNION: return union_support(s, direction);
     case SHAPE_INTERSECTION: return intersection_support(s, direction);
     case SHAPE_DIFFERENCE: return support(s->children[0], direction);

@@ -57,6 +57,9 @@ static void describe(line *out, const shape *s) {
         append(out, "half_space n=(%g, %g, %g)", s->half_space.normal[0], s->half_space.normal[1],
                s->half_space.normal[2]);
         return;
+    case SHAPE_MESH:
+        append(out, "mesh '%s' of %lld triangles", s->mesh.name, (long long)mesh_solid_triangles(s->mesh.solid));
+        return;
     case SHAPE_UNION: describe_children(out, "union", s); return;
     case SHAPE_INTERSECTION: describe_children(out, "intersection", s); return;
     case SHAPE_DIFFERENCE: describe_children(out, "difference", s); return;

@@ -128,6 +128,7 @@ double shape_distance(const shape *s, const double x[3]) {
     case SHAPE_CAPSULE: return capsule_distance(s, x);
     case SHAPE_TORUS: return torus_distance(s, x);
     case SHAPE_HALF_SPACE: return half_space_distance(s, x);
+    case SHAPE_MESH: return mesh_solid_distance(s->mesh.solid, x);
     case SHAPE_UNION: return union_distance(s, x);
     case SHAPE_INTERSECTION: return intersection_distance(s, x);
     case SHAPE_DIFFERENCE: return difference_distance(s, x);

@@ -2,6 +2,7 @@
 #ifndef SUNDER_GEOM_SHAPE_TREE_H
 #define SUNDER_GEOM_SHAPE_TREE_H
 
+#include "geom/mesh_solid.h"
 #include "geom/shape.h"
 
 typedef enum shape_kind {
@@ -11,6 +12,7 @@ typedef enum shape_kind {
     SHAPE_CAPSULE,
     SHAPE_TORUS,
     SHAPE_HALF_SPACE,
+    SHAPE_MESH,
     SHAPE_UNION,
     SHAPE_INTERSECTION,
     SHAPE_DIFFERENCE, /* the base is the first child, the cuts follow */
@@ -50,6 +52,10 @@ struct shape {
         struct {
             double point[3], normal[3];
         } half_space;
+        struct {
+            const mesh_solid *solid;
+            const char *name;
+        } mesh;
         struct {
             double rotation[9], scale, translation[3];
         } transform;

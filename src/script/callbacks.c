@@ -59,7 +59,8 @@ static void read_results(lua_State *L, request *q, int first) {
     char expected[96], found[160];
     q->results = spread_vector(L, first);
     bool any = q->outputs < 0;
-    snprintf(expected, sizeof expected, any ? "three numbers, or six for two families" : "%d finite numbers", q->outputs);
+    snprintf(expected, sizeof expected, any ? "three numbers, or six for two families" : "%d finite numbers",
+             q->outputs);
     if (any ? q->results != 3 && q->results != 6 : q->results != q->outputs) {
         snprintf(found, sizeof found, "%d result%s", q->results, q->results == 1 ? "" : "s");
         throw_results(L, q, expected, found);
@@ -192,7 +193,10 @@ static void try_fibres(script *s, scene_fibres *f, double points[PLACE_CALLS][3]
     if (!is_lua(&f->direction)) return;
     double output[OUTPUTS_MOST];
     static const double origin[3];
-    request q = {.callback = f->direction.context, .input = count ? points[0] : origin, .inputs = 3, .output = output,
+    request q = {.callback = f->direction.context,
+                 .input = count ? points[0] : origin,
+                 .inputs = 3,
+                 .output = output,
                  .outputs = -1};
     report r;
     if (call_request(&q, &r) != STATUS_OK) {

@@ -80,7 +80,8 @@ void problem_place(script *s, const place *p, const char *expected, const char *
     problem_report(s, &r);
 }
 
-/* If `message` starts with "short_src:line:" of a file's frame, fills file and line and returns what follows; else NULL. */
+/* If `message` starts with "short_src:line:" of a file's frame, fills file and line and returns what follows; else
+ * NULL. */
 static const char *after_prefix(const lua_Debug *frame, const char *message, report *r) {
     if (frame->source[0] != '@') return NULL;
     size_t length = strlen(frame->short_src);
@@ -150,8 +151,8 @@ status error_take(script *s, int lua_status, report *r) {
         lua_pop(s->L, 1);
         return report_abort(s, r);
     }
-    /* No luaL_testudata here: outside of protected mode nothing may allocate. Every handled error is our report; what is
-     * left is an error within the handler, which Lua gives as a string. */
+    /* No luaL_testudata here: outside of protected mode nothing may allocate. Every handled error is our report; what
+     * is left is an error within the handler, which Lua gives as a string. */
     if (lua_type(s->L, -1) == LUA_TUSERDATA) {
         *r = *(const report *)lua_touserdata(s->L, -1);
     } else {

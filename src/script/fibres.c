@@ -7,7 +7,8 @@
 
 typedef enum fibre_kind { FIBRES_WRONG, FIBRES_DIRECTION, FIBRES_FIELD, FIBRES_AROUND } fibre_kind;
 
-/* Directions around an axis: `along` of the axis, `around` of the circle, `outward` of the radius. Lives in the scene's arena. */
+/* Directions around an axis: `along` of the axis, `around` of the circle, `outward` of the radius. Lives in the scene's
+ * arena. */
 typedef struct around {
     double center[3], axis[3], substitute[3]; /* unit vectors; substitute is perpendicular to the axis */
     double along, around, outward;

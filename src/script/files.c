@@ -31,11 +31,16 @@ static const char *read_whole(script *s, const char *path, const char **text, si
     const char *trouble = NULL;
     size_t used = 0;
     char *buffer = NULL;
-    if (fstat(file, &facts) != 0) trouble = strerror(errno);
-    else if (S_ISDIR(facts.st_mode)) trouble = "a folder";
-    else if (!S_ISREG(facts.st_mode)) trouble = "something that is no regular file";
-    else if (facts.st_size > FILE_LIMIT) trouble = "a file over 4 MiB";
-    else if (!(buffer = arena_allocate(s->memory, (size_t)facts.st_size + 1))) trouble = "no memory to read it";
+    if (fstat(file, &facts) != 0)
+        trouble = strerror(errno);
+    else if (S_ISDIR(facts.st_mode))
+        trouble = "a folder";
+    else if (!S_ISREG(facts.st_mode))
+        trouble = "something that is no regular file";
+    else if (facts.st_size > FILE_LIMIT)
+        trouble = "a file over 4 MiB";
+    else if (!(buffer = arena_allocate(s->memory, (size_t)facts.st_size + 1)))
+        trouble = "no memory to read it";
     while (!trouble && used < (size_t)facts.st_size) {
         ssize_t got = read(file, buffer + used, (size_t)facts.st_size - used);
         if (got < 0 && errno != EINTR) trouble = strerror(errno);
@@ -194,7 +199,8 @@ const source_file *load_scene_file(lua_State *L, const char *path) {
 /* ---- require ----------------------------------------------------------------------------------------------------- */
 
 static void refuse_after_loading(lua_State *L, const char *what) {
-    if (script_of(L)->loaded) throw_here(L, what, "a pure function of time or place", "a file read after loading", NULL);
+    if (script_of(L)->loaded)
+        throw_here(L, what, "a pure function of time or place", "a file read after loading", NULL);
 }
 
 static void load_module(lua_State *L, const char *name) {
@@ -212,7 +218,8 @@ static void load_module(lua_State *L, const char *name) {
         folder_of(path, folder, sizeof folder);
         list_folder(&list, folder);
         snprintf(found, sizeof found, "%.100s: %.100s", file_name, trouble);
-        throw_here(L, "require", "\"sunder\" or a Lua file beside the scene", found, nearest_listed(&list, name, nearest));
+        throw_here(L, "require", "\"sunder\" or a Lua file beside the scene", found,
+                   nearest_listed(&list, name, nearest));
     }
     load_text(L, file);
     lua_pushstring(L, name);
@@ -232,7 +239,8 @@ int sandbox_require(lua_State *L) {
     char found[160];
     describe_value(L, 1, found, sizeof found);
     if (!is_plain_path(name))
-        throw_here(L, "require", "\"sunder\" or the name of a Lua file beside the scene (no folders above it)", found, NULL);
+        throw_here(L, "require", "\"sunder\" or the name of a Lua file beside the scene (no folders above it)", found,
+                   NULL);
     lua_pop(L, 1);
     lua_pushvalue(L, 1);
     lua_pushboolean(L, 0); /* being loaded */
@@ -280,7 +288,8 @@ static void throw_missing_recipe(lua_State *L, const char *name, const place *p)
     char folder[SCRIPT_PATH + 16], found[160], nearest[LISTED_SIZE];
     for (int step = 0; recipe_folder(s, step, folder, sizeof folder); step++) list_folder(&list, folder);
     snprintf(found, sizeof found, "'%.100s'", name);
-    throw_place(L, p, "the name of a recipe (recipes/NAME.lua beside the scene or in a folder above it, or $SUNDER_RECIPES)",
+    throw_place(L, p,
+                "the name of a recipe (recipes/NAME.lua beside the scene or in a folder above it, or $SUNDER_RECIPES)",
                 found, nearest_listed(&list, name, nearest));
 }
 
@@ -303,7 +312,8 @@ static const source_file *find_recipe(lua_State *L, const char *name, const plac
         snprintf(path, sizeof path, "%s%s.lua", folder, name);
         file = find_source(s, shown_path(s, path));
         if (file) return file;
-        if (access(path, R_OK) == 0 && add_source(L, path, source_name, shown_path(s, path), &file) == NULL) return file;
+        if (access(path, R_OK) == 0 && add_source(L, path, source_name, shown_path(s, path), &file) == NULL)
+            return file;
     }
     throw_missing_recipe(L, name, p);
     return NULL;
@@ -312,7 +322,8 @@ static const source_file *find_recipe(lua_State *L, const char *name, const plac
 /* Pushes a copy of the plain table at `index`. */
 static void push_copy(lua_State *L, int index, int depth, const char *file) {
     place p = {.file = file};
-    if (depth > COPY_DEPTH) throw_place(L, &p, "a recipe of tables not nested this deep", "a table within itself?", NULL);
+    if (depth > COPY_DEPTH)
+        throw_place(L, &p, "a recipe of tables not nested this deep", "a table within itself?", NULL);
     luaL_checkstack(L, 8, "nested too deep");
     index = lua_absindex(L, index);
     lua_newtable(L);
@@ -320,8 +331,10 @@ static void push_copy(lua_State *L, int index, int depth, const char *file) {
     while (lua_next(L, index)) {
         guard_spend(L, 10);
         lua_pushvalue(L, -2);
-        if (lua_type(L, -2) == LUA_TTABLE) push_copy(L, -2, depth + 1, file);
-        else lua_pushvalue(L, -2);
+        if (lua_type(L, -2) == LUA_TTABLE)
+            push_copy(L, -2, depth + 1, file);
+        else
+            lua_pushvalue(L, -2);
         lua_rawset(L, -5);
         lua_pop(L, 1);
     }
@@ -368,7 +381,8 @@ void push_recipe(lua_State *L, const char *name, const place *p) {
     lua_pop(L, 1);
 }
 
-/* core.recipe(name, overrides): a fresh copy of the recipe's table, its origin noted; the Lua side merges the overrides. */
+/* core.recipe(name, overrides): a fresh copy of the recipe's table, its origin noted; the Lua side merges the
+ * overrides. */
 int api_recipe(lua_State *L) {
     script *s = script_of(L);
     luaL_checkstack(L, API_STACK, "recipes");

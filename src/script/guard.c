@@ -62,7 +62,8 @@ bool guard_may_go_on(guard *g, size_t work) {
     return g->reason == GUARD_FINE;
 }
 
-/* Says no. Lua tries again after a collection, and unwinding may ask for memory too: the first place of a series stands. */
+/* Says no. Lua tries again after a collection, and unwinding may ask for memory too: the first place of a series
+ * stands. */
 static void refuse(guard *g, guard_reason reason) {
     if (!g->refusing) note_place(g);
     g->refusing = true;

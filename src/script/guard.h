@@ -1,10 +1,10 @@
 /* The limits that a script runs under: processor time and memory.
  *
- * Both are sticky. A count hook reads the clock; once the time is over it fires at every instruction and raises again, and
- * pcall and xpcall are our own and pass the abort on, so that no loop of protected calls survives it. The allocator reads the
- * clock as well (a few huge strings fill seconds between two hook calls) and refuses to grow once a limit is passed. C
- * functions that loop without allocating tell how much they did (guard_spend). Finalisers never run under hooks, so the
- * sandbox has none. */
+ * Both are sticky. A count hook reads the clock; once the time is over it fires at every instruction and raises again,
+ * and pcall and xpcall are our own and pass the abort on, so that no loop of protected calls survives it. The allocator
+ * reads the clock as well (a few huge strings fill seconds between two hook calls) and refuses to grow once a limit is
+ * passed. C functions that loop without allocating tell how much they did (guard_spend). Finalisers never run under
+ * hooks, so the sandbox has none. */
 #ifndef SUNDER_SCRIPT_GUARD_H
 #define SUNDER_SCRIPT_GUARD_H
 
@@ -23,13 +23,13 @@ typedef enum guard_reason {
 } guard_reason;
 
 typedef struct guard {
-    lua_State *L;        /* NULL until the state exists */
-    double time_limit;   /* seconds of this thread's processor time for one batch: the loading, or one callback */
-    size_t memory_limit; /* bytes */
-    size_t used;         /* bytes that the Lua state holds, rounded up to whole cache lines */
-    double started;      /* processor time at the batch's first look at the clock; negative: not looked yet */
-    size_t unlooked;     /* bytes asked for since the last look */
-    size_t unspent;      /* work told to guard_spend since the last look */
+    lua_State *L;         /* NULL until the state exists */
+    double time_limit;    /* seconds of this thread's processor time for one batch: the loading, or one callback */
+    size_t memory_limit;  /* bytes */
+    size_t used;          /* bytes that the Lua state holds, rounded up to whole cache lines */
+    double started;       /* processor time at the batch's first look at the clock; negative: not looked yet */
+    size_t unlooked;      /* bytes asked for since the last look */
+    size_t unspent;       /* work told to guard_spend since the last look */
     guard_reason refused; /* why the allocator last said no */
     bool refusing;        /* it has not said yes since */
     guard_reason reason;  /* sticky: why the script was stopped */

@@ -1,8 +1,9 @@
 /* What the files of this floor share. Nothing outside src/script includes it.
  *
- * A script is loaded in one protected call (script.c). What is wrong is either recorded, so that one look at a scene finds as
- * many mistakes as possible (problem_*), or raised, when there is nothing to go on with (throw_*). Both end as `report`s. All
- * memory that outlives a Lua call lives in an arena or in the Lua state: an error may jump over any C frame of this floor. */
+ * A script is loaded in one protected call (script.c). What is wrong is either recorded, so that one look at a scene
+ * finds as many mistakes as possible (problem_*), or raised, when there is nothing to go on with (throw_*). Both end as
+ * `report`s. All memory that outlives a Lua call lives in an arena or in the Lua state: an error may jump over any C
+ * frame of this floor. */
 #ifndef SUNDER_SCRIPT_INTERNAL_H
 #define SUNDER_SCRIPT_INTERNAL_H
 
@@ -19,19 +20,19 @@ enum {
     SCRIPT_SETTINGS = 512,
     SCRIPT_PATH = 4096,
     SCRIPT_LOG = 8192,
-    SCRIPT_TEXT = 128,              /* longest text value, terminator included */
-    API_STACK = 64,                 /* stack slots that a function called from Lua reserves when it reads tables */
-    SCENE_SITE = SCENE_MATERIALS,   /* row of the scene's own effects in script.sites */
+    SCRIPT_TEXT = 128,            /* longest text value, terminator included */
+    API_STACK = 64,               /* stack slots that a function called from Lua reserves when it reads tables */
+    SCENE_SITE = SCENE_MATERIALS, /* row of the scene's own effects in script.sites */
 };
 
 /* A value without its origin: from a Lua table, from --set (raw: any kind that the text can be read as), or pinned. */
 typedef enum plain_kind { PLAIN_NONE, PLAIN_NUMBER, PLAIN_BOOLEAN, PLAIN_TEXT, PLAIN_VECTOR, PLAIN_OTHER } plain_kind;
 typedef struct plain_value {
     plain_kind kind;
-    bool raw;                /* text that may be read as another kind */
-    double number[3];        /* booleans: 0 or 1 */
+    bool raw;         /* text that may be read as another kind */
+    double number[3]; /* booleans: 0 or 1 */
     char text[SCRIPT_TEXT];
-    char found[160];         /* for messages */
+    char found[160]; /* for messages */
 } plain_value;
 
 typedef struct script_override {
@@ -70,15 +71,15 @@ struct script {
     lua_State *L;
     arena *memory;
     scene *scene;
-    script_reports *reports;   /* while loading */
-    int problem_count;         /* recorded, those that no longer fitted included */
-    int charged;               /* units of scene_charge so far */
-    const char *recipe;        /* --recipe or NULL */
-    const char *folder;        /* absolute, of the scene file */
-    const char *working;       /* the working folder, absolute */
-    bool loaded;               /* nothing may be declared, required or changed any more */
-    place here;                /* the call into the module that is running */
-    int scene_line;            /* of the call of s.scene */
+    script_reports *reports; /* while loading */
+    int problem_count;       /* recorded, those that no longer fitted included */
+    int charged;             /* units of scene_charge so far */
+    const char *recipe;      /* --recipe or NULL */
+    const char *folder;      /* absolute, of the scene file */
+    const char *working;     /* the working folder, absolute */
+    bool loaded;             /* nothing may be declared, required or changed any more */
+    place here;              /* the call into the module that is running */
+    int scene_line;          /* of the call of s.scene */
     place body_places[SCENE_BODIES];
     int source_count, declared_count, override_count, watch_count;
     source_file sources[SCRIPT_SOURCES];
@@ -89,16 +90,16 @@ struct script {
     uint64_t scene_keys_set;      /* bit by scene key: --set said it */
     bool knob_set[SCENE_MATERIALS + 1][EFFECT_LIMIT][PARAMETER_LIMIT];
     bool density_set[SCENE_MATERIALS];
-    uint64_t random_count;     /* draws of math.random */
-    int *watched;              /* [watch_count] upvalue index of each watched function (purity.c) */
+    uint64_t random_count; /* draws of math.random */
+    int *watched;          /* [watch_count] upvalue index of each watched function (purity.c) */
     char log[SCRIPT_LOG];
     size_t log_used;
     const char *resolved;
 };
 
 /* Keys of the registry (lua_rawsetp). */
-extern const char KEY_FROZEN, KEY_ENVIRONMENT, KEY_GLOBALS, KEY_MODULES, KEY_RECIPES, KEY_ORIGINS, KEY_MATERIALS, KEY_SCENE,
-    KEY_FUNCTIONS, KEY_WATCHED;
+extern const char KEY_FROZEN, KEY_ENVIRONMENT, KEY_GLOBALS, KEY_MODULES, KEY_RECIPES, KEY_ORIGINS, KEY_MATERIALS,
+    KEY_SCENE, KEY_FUNCTIONS, KEY_WATCHED;
 
 /* Names of metatables (luaL_newmetatable). */
 #define META_REPORT "sunder.report"
@@ -151,17 +152,26 @@ bool plain_fit(plain_value *v, const plain_rule *rule, char *expected, size_t si
 bool read_plain(script *s, int index, const place *p, const plain_rule *rule, plain_value *out);
 
 /* Named fields of a table. */
-typedef enum field_kind { FIELD_REAL, FIELD_SIZE, FIELD_VECTOR, FIELD_AXIS, FIELD_FLAG, FIELD_CHOICE, FIELD_TEXT, FIELD_OTHER } field_kind;
+typedef enum field_kind {
+    FIELD_REAL,
+    FIELD_SIZE,
+    FIELD_VECTOR,
+    FIELD_AXIS,
+    FIELD_FLAG,
+    FIELD_CHOICE,
+    FIELD_TEXT,
+    FIELD_OTHER
+} field_kind;
 typedef struct field {
     const char *key;
     field_kind kind;
     bool required;
-    double *number;             /* reals 1, vectors and axes 3, flags and choices 1 */
-    char *text;                 /* [SCRIPT_TEXT] */
+    double *number; /* reals 1, vectors and axes 3, flags and choices 1 */
+    char *text;     /* [SCRIPT_TEXT] */
     const char *const *choices;
-    double minimum, maximum;    /* of reals, when minimum < maximum */
+    double minimum, maximum; /* of reals, when minimum < maximum */
     bool infinite;
-    bool given;                 /* out */
+    bool given; /* out */
 } field;
 /* Reads the table at `index`: unknown keys, wrong kinds and missing fields are recorded; returns whether all was well.
  * FIELD_OTHER is only known to be there. */
@@ -175,7 +185,8 @@ int push_sorted_names(script *s, int index, const place *p);
 
 /* ---- sandbox.c, strings.c, tables.c ---- */
 void sandbox_open(lua_State *L);
-/* Wraps the table on top of the stack: reading goes through, writing is an error, unknown names are errors. `what` names it. */
+/* Wraps the table on top of the stack: reading goes through, writing is an error, unknown names are errors. `what`
+ * names it. */
 void push_read_only(lua_State *L, const char *what);
 /* Pushes the table that really holds the contents of the value at `index` (itself, unless it is wrapped or frozen). */
 void push_contents(lua_State *L, int index);
@@ -234,8 +245,8 @@ void read_fibres(script *s, int index, const place *p, scene_fibres *out);
 void read_function(script *s, int index, const place *p, scene_function *out);
 /* Makes a callback of the Lua function at `index`; `p` names it in messages. */
 void make_callback(script *s, int index, const place *p, int outputs, scene_function *out);
-/* Calls every function of the scene once or a few times, where and when the simulation may call it too; records failures and
- * fills in fibre families. */
+/* Calls every function of the scene once or a few times, where and when the simulation may call it too; records
+ * failures and fills in fibre families. */
 void try_functions(script *s);
 
 /* ---- purity.c ---- */

@@ -86,8 +86,10 @@ static void read_effect_table(script *s, int index, const place *p, const materi
         list_keys(e, expected, sizeof expected);
         lua_pushvalue(L, -1);
         lua_rawget(L, index);
-        if (key >= 0) read_parameter(s, -1, &at, e, key, values);
-        else problem_place(s, &at, expected, "a key that does not exist", name_nearest(name, keys, e->parameter_count));
+        if (key >= 0)
+            read_parameter(s, -1, &at, e, key, values);
+        else
+            problem_place(s, &at, expected, "a key that does not exist", name_nearest(name, keys, e->parameter_count));
         lua_settop(L, list);
     }
     lua_settop(L, list - 1);
@@ -129,7 +131,8 @@ static void report_unknown(script *s, const place *p, const char *name) {
     for (int e = 0; e < effects; e++) {
         if (all[e]->scope != SCOPE_MATERIAL) continue;
         candidates[count++] = all[e]->name;
-        for (int k = 0; k < all[e]->parameter_count; k++) owners[count] = all[e], candidates[count++] = all[e]->parameters[k].key;
+        for (int k = 0; k < all[e]->parameter_count; k++)
+            owners[count] = all[e], candidates[count++] = all[e]->parameters[k].key;
     }
     const char *nearest = name_nearest(name, candidates, count);
     char dotted[128] = "";
@@ -139,7 +142,8 @@ static void report_unknown(script *s, const place *p, const char *name) {
     if (scene_effect >= 0)
         problem_place(s, p, "an effect of materials", "an effect that belongs to the scene itself", NULL);
     else
-        problem_place(s, p, "density, name, or an effect of materials", "a key that does not exist", *dotted ? dotted : nearest);
+        problem_place(s, p, "density, name, or an effect of materials", "a key that does not exist",
+                      *dotted ? dotted : nearest);
 }
 
 static void read_density(script *s, int index, const place *p, scene_material *m) {
@@ -211,7 +215,8 @@ static material_origin find_origin(script *s, int index, const place *p) {
     const source_file *file = find_source(s, lua_tostring(L, origin + 2));
     const source_file *caller = lua_isnil(L, origin + 3) ? NULL : find_source(s, lua_tostring(L, origin + 3));
     o.base = (place){.file = file->display};
-    o.call = (place){.file = caller ? caller->display : NULL, .line = (int)lua_tointeger(L, origin + 4), .call = "recipe"};
+    o.call =
+        (place){.file = caller ? caller->display : NULL, .line = (int)lua_tointeger(L, origin + 4), .call = "recipe"};
     lua_settop(L, origin);
     if (lua_getfield(L, origin, "overrides") == LUA_TTABLE) o.overrides = lua_gettop(L);
     return o;
@@ -300,7 +305,8 @@ void check_effects(script *s) {
         for (int e = 0; e < count; e++) {
             const effect_site *site = &s->sites[row][e];
             report r;
-            if (values[e].on && effect_values_check(all[e], &values[e], values, site->file, site->line, &r) != STATUS_OK)
+            if (values[e].on &&
+                effect_values_check(all[e], &values[e], values, site->file, site->line, &r) != STATUS_OK)
                 problem_report(s, &r);
         }
     }

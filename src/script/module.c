@@ -35,8 +35,8 @@ static int api_twin(lua_State *L) {
     return 1;
 }
 
-/* What a scene calls. Upvalues: name, the Lua function. The C frame keeps the caller's frame alive below it: `return s.scene
- * {…}` would otherwise be a tail call that leaves no line to name. */
+/* What a scene calls. Upvalues: name, the Lua function. The C frame keeps the caller's frame alive below it: `return
+ * s.scene {…}` would otherwise be a tail call that leaves no line to name. */
 static int call_from_scene(lua_State *L) {
     script *s = script_of(L);
     const char *name = lua_tostring(L, lua_upvalueindex(1));
@@ -93,9 +93,9 @@ static void set_operators(lua_State *L, int module) {
 
 void module_open(lua_State *L) {
     static const luaL_Reg core[] = {
-        {"params", api_params},   {"choice", api_choice},       {"scene", api_scene},   {"recipe", api_recipe},
-        {"twin", api_twin},       {"shape", api_shape},         {"combine", api_combine}, {"translate", api_translate},
-        {"rotate", api_rotate},   {"scale", api_scale},         {"fibres", api_fibres}, {NULL, NULL},
+        {"params", api_params}, {"choice", api_choice}, {"scene", api_scene},     {"recipe", api_recipe},
+        {"twin", api_twin},     {"shape", api_shape},   {"combine", api_combine}, {"translate", api_translate},
+        {"rotate", api_rotate}, {"scale", api_scale},   {"fibres", api_fibres},   {NULL, NULL},
     };
     int base = lua_gettop(L);
     lua_newtable(L);

@@ -139,8 +139,10 @@ static bool read_description(script *s, declaration *d, const place *p) {
         bool item = lua_isinteger(L, -2) && lua_tointeger(L, -2) == 1;
         lua_pushvalue(L, -2);
         lua_insert(L, -2);
-        if (item) lua_pop(L, 2);
-        else lua_rawset(L, value + 1);
+        if (item)
+            lua_pop(L, 2);
+        else
+            lua_rawset(L, value + 1);
     }
     field fields[] = {{.key = "unit", .kind = FIELD_TEXT, .text = unit},
                       {.key = "doc", .kind = FIELD_TEXT, .text = doc},
@@ -166,7 +168,8 @@ static void keep_value(declaration *d, const plain_value *v) {
     d->shown.is_text = d->kind != PLAIN_NUMBER;
     d->shown.number = v->number[0];
     if (d->kind == PLAIN_TEXT) snprintf(d->shown.text, sizeof d->shown.text, "%s", v->text);
-    if (d->kind == PLAIN_BOOLEAN) snprintf(d->shown.text, sizeof d->shown.text, "%s", v->number[0] != 0 ? "true" : "false");
+    if (d->kind == PLAIN_BOOLEAN)
+        snprintf(d->shown.text, sizeof d->shown.text, "%s", v->number[0] != 0 ? "true" : "false");
 }
 
 /* The default on top of the stack: what kind the parameter is. */
@@ -179,7 +182,8 @@ static bool read_default(script *s, declaration *d, const place *p) {
     }
     plain_value v = plain_from_lua(L, -1);
     if (v.kind != PLAIN_NUMBER && v.kind != PLAIN_BOOLEAN && v.kind != PLAIN_TEXT) {
-        problem_place(s, p, "a number, a text, true, false, s.choice { … } or { default, unit =, doc =, min =, max = }", v.found, NULL);
+        problem_place(s, p, "a number, a text, true, false, s.choice { … } or { default, unit =, doc =, min =, max = }",
+                      v.found, NULL);
         return false;
     }
     d->kind = v.kind;
@@ -220,8 +224,10 @@ static void replace_by_value(lua_State *L, const declaration *d) {
     case PLAIN_BOOLEAN: lua_pushboolean(L, strcmp(d->shown.text, "true") == 0); break;
     case PLAIN_TEXT: lua_pushstring(L, d->shown.text); break;
     default:
-        if (whole) lua_pushinteger(L, (lua_Integer)d->shown.number);
-        else lua_pushnumber(L, d->shown.number);
+        if (whole)
+            lua_pushinteger(L, (lua_Integer)d->shown.number);
+        else
+            lua_pushnumber(L, d->shown.number);
     }
 }
 
@@ -231,8 +237,10 @@ static void apply_to_scene(script *s, const declaration *d, const place *p) {
     if (key < 0) return;
     plain_value v = {.kind = d->kind, .number = {d->shown.number}};
     snprintf(v.text, sizeof v.text, "%s", d->shown.text);
-    if (d->kind == PLAIN_NUMBER) snprintf(v.found, sizeof v.found, "%.14g", d->shown.number);
-    else snprintf(v.found, sizeof v.found, "'%s'", d->shown.text);
+    if (d->kind == PLAIN_NUMBER)
+        snprintf(v.found, sizeof v.found, "%.14g", d->shown.number);
+    else
+        snprintf(v.found, sizeof v.found, "'%s'", d->shown.text);
     char expected[256];
     const char *nearest;
     if (!scene_key_set(s->scene, key, &v, expected, sizeof expected, &nearest))

@@ -1,8 +1,8 @@
 /* Lua patterns, matched with a budget.
  *
- * A pattern such as ".-.-.-b" backtracks for hours without one call of Lua's count hook. This matcher counts its steps and
- * asks, now and then, whether it may go on. It raises nothing and allocates nothing: errors come back as text. The meaning of
- * patterns is the Lua 5.4 manual's, section 6.4.1; tests compare it with Lua's own library. */
+ * A pattern such as ".-.-.-b" backtracks for hours without one call of Lua's count hook. This matcher counts its steps
+ * and asks, now and then, whether it may go on. It raises nothing and allocates nothing: errors come back as text. The
+ * meaning of patterns is the Lua 5.4 manual's, section 6.4.1; tests compare it with Lua's own library. */
 #ifndef SUNDER_SCRIPT_PATTERN_H
 #define SUNDER_SCRIPT_PATTERN_H
 
@@ -22,18 +22,18 @@ typedef struct pattern_capture {
 
 typedef struct pattern {
     const char *subject, *subject_end;
-    const char *end;                        /* of the pattern's text */
+    const char *end;                            /* of the pattern's text */
     bool (*go_on)(void *context, size_t steps); /* false stops the match; NULL: never asked */
     void *context;
-    size_t steps;      /* since go_on was last asked */
-    int depth;         /* of nested calls */
+    size_t steps; /* since go_on was last asked */
+    int depth;    /* of nested calls */
     int capture_count;
     pattern_capture captures[PATTERN_CAPTURES];
     const char *error; /* a constant text, when the pattern is malformed or was stopped */
 } pattern;
 
-/* Matches the pattern text [p, m->end), its anchor already removed, at s. Returns the end of the match, or NULL: no match,
- * or m->error. Captures are those of this match. */
+/* Matches the pattern text [p, m->end), its anchor already removed, at s. Returns the end of the match, or NULL: no
+ * match, or m->error. Captures are those of this match. */
 const char *pattern_match(pattern *m, const char *s, const char *p);
 
 #endif

@@ -92,8 +92,10 @@ static void skip_blank(lexer *x) {
             x->at += 2;
             int level = long_bracket(x);
             token ignored;
-            if (level >= 0) read_long(x, level, &ignored);
-            else while (x->at < x->end && *x->at != '\n') x->at++;
+            if (level >= 0)
+                read_long(x, level, &ignored);
+            else
+                while (x->at < x->end && *x->at != '\n') x->at++;
         } else {
             return;
         }
@@ -153,7 +155,8 @@ static int nesting(const token *t) {
 
 /* ---- following a path -------------------------------------------------------------------------------------------- */
 
-/* Reads the head of one field; afterwards the lexer stands at its value. False for a positional field, nothing consumed. */
+/* Reads the head of one field; afterwards the lexer stands at its value. False for a positional field, nothing
+ * consumed. */
 static bool read_field_name(lexer *x, token *name) {
     lexer ahead = *x;
     token first = next_token(&ahead);
@@ -240,7 +243,8 @@ static lexer find_return(const char *text, size_t size, int *line) {
     return found;
 }
 
-/* The lexer behind the word `call` on or after the given line, or at the start of that line when there is no such word. */
+/* The lexer behind the word `call` on or after the given line, or at the start of that line when there is no such word.
+ */
 static lexer find_call(const char *text, size_t size, int line, const char *call) {
     lexer x = {text, text + size, 1}, before = x;
     token t = next_token(&x);

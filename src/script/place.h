@@ -1,7 +1,7 @@
 /* Where in a Lua file a value was written: for messages that name the right line.
  *
- * Lua tells the line of a call, not of a key in the table that the call was given. A place is the call's line and the path
- * of keys from there; place_find reads the source again, token by token, and follows the path through the table
+ * Lua tells the line of a call, not of a key in the table that the call was given. A place is the call's line and the
+ * path of keys from there; place_find reads the source again, token by token, and follows the path through the table
  * constructors as far as they are written out. Only messages pay for it. */
 #ifndef SUNDER_SCRIPT_PLACE_H
 #define SUNDER_SCRIPT_PLACE_H
@@ -23,7 +23,8 @@ typedef struct place {
     place_step path[PLACE_DEPTH];
 } place;
 
-/* The place one key, or one list index, further down. Keys are kept by pointer. Past PLACE_DEPTH the path stays as it is. */
+/* The place one key, or one list index, further down. Keys are kept by pointer. Past PLACE_DEPTH the path stays as it
+ * is. */
 place place_key(const place *from, const char *key);
 place place_index(const place *from, int index);
 

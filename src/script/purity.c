@@ -4,10 +4,10 @@
  *   - globals cannot be written (sandbox.c);
  *   - every table that a callback can reach, through upvalues, globals, other functions' upvalues or other tables, is
  *     frozen: its contents move to a hidden table, and the table itself only reads through to it;
- *   - the upvalues of every Lua function that a callback can reach, and the states of the iterators that pairs and gmatch
- *     make, are compared with what they were, after each call.
- * What a call makes for itself (local variables, new tables, new closures) it may change. Functions of the module sunder and
- * of the libraries keep no state and are not looked at. */
+ *   - the upvalues of every Lua function that a callback can reach, and the states of the iterators that pairs and
+ * gmatch make, are compared with what they were, after each call. What a call makes for itself (local variables, new
+ * tables, new closures) it may change. Functions of the module sunder and of the libraries keep no state and are not
+ * looked at. */
 #include "script/internal.h"
 
 #include <string.h>
@@ -160,8 +160,10 @@ static void watch(lua_State *L, int function, int upvalue) {
     lua_pushinteger(L, upvalue);
     lua_rawseti(L, WALK_WATCHED, at + 2);
     /* A list cannot hold nil: the list itself stands for it. */
-    if (lua_isnil(L, -1)) lua_pushvalue(L, WALK_WATCHED);
-    else lua_pushvalue(L, -1);
+    if (lua_isnil(L, -1))
+        lua_pushvalue(L, WALK_WATCHED);
+    else
+        lua_pushvalue(L, -1);
     lua_rawseti(L, WALK_WATCHED, at + 3);
 }
 
@@ -192,8 +194,10 @@ static int walk(lua_State *L) {
     enqueue_contents(L, lua_gettop(L));
     for (lua_Integer at = 1; lua_rawgeti(L, WALK_TODO, at) != LUA_TNIL; at++) {
         int value = lua_gettop(L);
-        if (lua_type(L, value) == LUA_TFUNCTION) watch_function(L, value);
-        else freeze_table(L, value);
+        if (lua_type(L, value) == LUA_TFUNCTION)
+            watch_function(L, value);
+        else
+            freeze_table(L, value);
         lua_settop(L, value - 1);
     }
     return 0;

@@ -59,8 +59,10 @@ static void put_quoted(text_out *out, const char *text) {
         char escaped[8];
         bool plain = !iscntrl((unsigned char)*p) && *p != '"' && *p != '\\';
         snprintf(escaped, sizeof escaped, "\\%03d", (unsigned char)*p);
-        if (plain) put(out, p, 1);
-        else put_text(out, escaped);
+        if (plain)
+            put(out, p, 1);
+        else
+            put_text(out, escaped);
     }
     put_text(out, "\"");
 }
@@ -71,8 +73,10 @@ static void put_parameter(text_out *out, const scene_parameter *p) {
     put_text(out, "  [");
     put_quoted(out, p->name);
     put_text(out, "] = ");
-    if (p->is_text) put_quoted(out, p->text);
-    else put_text(out, number);
+    if (p->is_text)
+        put_quoted(out, p->text);
+    else
+        put_text(out, number);
     put_text(out, ",\n");
 }
 
@@ -99,7 +103,8 @@ static void write_text(script *s, const bool *derived) {
 static bool list_effect(script *s, int row, int index, bool *derived) {
     int count;
     const effect *e = effect_catalogue(&count)[index];
-    const effect_values *values = row == SCENE_SITE ? &s->scene->effects[index] : &s->scene->materials[row].effects[index];
+    const effect_values *values =
+        row == SCENE_SITE ? &s->scene->effects[index] : &s->scene->materials[row].effects[index];
     if (!values->on) return true;
     for (int k = 0; k < e->parameter_count; k++) {
         scene_parameter *p = add_parameter(s);
@@ -155,7 +160,8 @@ status resolve_parameters(script *s, report *r) {
     bool derived[SCENE_PARAMETERS] = {false};
     if (!list_all(s, derived)) {
         char expected[96];
-        snprintf(expected, sizeof expected, "at most %d parameters: of the scene, and of its materials' effects", SCENE_PARAMETERS);
+        snprintf(expected, sizeof expected, "at most %d parameters: of the scene, and of its materials' effects",
+                 SCENE_PARAMETERS);
         return report_input(r, s->sources[0].display, s->scene_line, "scene", expected, "more", NULL);
     }
     write_text(s, derived);

@@ -1,9 +1,9 @@
 /* The world that a scene sees: safe libraries, globals that know their names, nothing that reaches outside.
  *
- * Library tables are wrapped: an empty table whose metatable reads through to the contents and refuses writes. The globals are
- * wrapped the same way, except that writes go through until the scene is loaded. Reading a name that does not exist is an error
- * with the nearest one. No finalisers (they run without hooks), no weak tables (what is left in them depends on the collector),
- * no coroutines (each would need the hooks again). */
+ * Library tables are wrapped: an empty table whose metatable reads through to the contents and refuses writes. The
+ * globals are wrapped the same way, except that writes go through until the scene is loaded. Reading a name that does
+ * not exist is an error with the nearest one. No finalisers (they run without hooks), no weak tables (what is left in
+ * them depends on the collector), no coroutines (each would need the hooks again). */
 #include "script/internal.h"
 
 #include "base/names.h"
@@ -60,7 +60,8 @@ static int missing_name(lua_State *L) {
     const char *name = lua_tostring(L, 2);
     for (size_t i = 0; i < sizeof absent / sizeof *absent; i++)
         if (strcmp(name, absent[i]) == 0)
-            throw_here(L, name, "what a scene may use: string, table, math, utf8, sunder", "a library that the sandbox has not", NULL);
+            throw_here(L, name, "what a scene may use: string, table, math, utf8, sunder",
+                       "a library that the sandbox has not", NULL);
     throw_here(L, name, expected, found, nearest_key(L, 1, name));
 }
 
@@ -160,8 +161,10 @@ static int sandbox_load(lua_State *L) {
         lua_insert(L, -2);
         return 2;
     }
-    if (own_environment) lua_pushvalue(L, 4);
-    else lua_rawgetp(L, LUA_REGISTRYINDEX, &KEY_ENVIRONMENT);
+    if (own_environment)
+        lua_pushvalue(L, 4);
+    else
+        lua_rawgetp(L, LUA_REGISTRYINDEX, &KEY_ENVIRONMENT);
     if (!lua_setupvalue(L, -2, 1)) lua_pop(L, 1);
     return 1;
 }
@@ -200,7 +203,8 @@ static int sandbox_print(lua_State *L) {
 static int sandbox_collectgarbage(lua_State *L) {
     const char *option = luaL_optstring(L, 1, "collect");
     if (strcmp(option, "count") != 0) return luaL_error(L, "collectgarbage knows only \"count\" in a scene");
-    if (script_of(L)->loaded) throw_here(L, "collectgarbage", "a pure function of time or place", "a look at memory", NULL);
+    if (script_of(L)->loaded)
+        throw_here(L, "collectgarbage", "a pure function of time or place", "a look at memory", NULL);
     lua_pushnumber(L, (double)guard_of(L)->used / 1024.0);
     return 1;
 }
@@ -209,8 +213,8 @@ static int sandbox_collectgarbage(lua_State *L) {
 
 enum { RANDOM_STREAM = 0x5c3a };
 
-/* Counter-based, so that the nth draw depends on the seed alone. Not after loading: a function of time or place that draws
- * would depend on how often it was called. */
+/* Counter-based, so that the nth draw depends on the seed alone. Not after loading: a function of time or place that
+ * draws would depend on how often it was called. */
 static int sandbox_random(lua_State *L) {
     script *s = script_of(L);
     if (s->loaded)
@@ -343,15 +347,21 @@ static void open_environment(lua_State *L, int globals) {
 }
 
 void sandbox_open(lua_State *L) {
-    static const char *const kept[] = {"assert", "error", "getmetatable", "ipairs", "rawequal", "select", "tonumber",
-                                       "type", "_VERSION", NULL};
+    static const char *const kept[] = {"assert", "error",    "getmetatable", "ipairs",   "rawequal",
+                                       "select", "tonumber", "type",         "_VERSION", NULL};
     static const luaL_Reg own[] = {
-        {"setmetatable", sandbox_setmetatable}, {"rawget", sandbox_rawget},
-        {"rawset", sandbox_rawset},             {"rawlen", sandbox_rawlen},
-        {"load", sandbox_load},                 {"print", sandbox_print},
-        {"pcall", guard_pcall},                 {"xpcall", guard_xpcall},
-        {"require", sandbox_require},           {"collectgarbage", sandbox_collectgarbage},
-        {"tostring", sandbox_tostring},         {NULL, NULL},
+        {"setmetatable", sandbox_setmetatable},
+        {"rawget", sandbox_rawget},
+        {"rawset", sandbox_rawset},
+        {"rawlen", sandbox_rawlen},
+        {"load", sandbox_load},
+        {"print", sandbox_print},
+        {"pcall", guard_pcall},
+        {"xpcall", guard_xpcall},
+        {"require", sandbox_require},
+        {"collectgarbage", sandbox_collectgarbage},
+        {"tostring", sandbox_tostring},
+        {NULL, NULL},
     };
     open_metatables(L);
     open_registry(L);

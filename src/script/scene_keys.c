@@ -16,31 +16,57 @@ typedef struct scene_key {
 
 static const char *const transfers[] = {"apic", "rpic", "pic", "flip", NULL};
 static const char *const kernels[] = {"quadratic", "cubic", NULL};
-_Static_assert(TRANSFER_APIC == 0 && TRANSFER_RPIC == 1 && TRANSFER_PIC == 2 && TRANSFER_FLIP == 3, "order of `transfers`");
+_Static_assert(TRANSFER_APIC == 0 && TRANSFER_RPIC == 1 && TRANSFER_PIC == 2 && TRANSFER_FLIP == 3,
+               "order of `transfers`");
 _Static_assert(KERNEL_QUADRATIC == 0 && KERNEL_CUBIC == 1, "order of `kernels`");
 
 #define AT(member) offsetof(scene, member), sizeof((scene *)0)->member
 #define NUMBER .kind = PLAIN_NUMBER
 
 static const scene_key keys[] = {
-    {"cfl", "1", "fraction of the step limit that is used", STORE_DOUBLE, AT(cfl), {NUMBER, .minimum = 1e-3, .maximum = 1}},
+    {"cfl",
+     "1",
+     "fraction of the step limit that is used",
+     STORE_DOUBLE,
+     AT(cfl),
+     {NUMBER, .minimum = 1e-3, .maximum = 1}},
     {"dt", "time", "time step", STORE_DOUBLE, AT(dt), {NUMBER, .maximum = 1e9, .above = true, .automatic = true}},
     {"duration", "time", "simulated time", STORE_DOUBLE, AT(duration), {NUMBER, .maximum = 1e9, .above = true}},
     {"dx", "length", "grid spacing", STORE_DOUBLE, AT(dx), {NUMBER, .maximum = 1e9, .above = true, .automatic = true}},
     {"fps", "1/time", "frames in a unit of time", STORE_DOUBLE, AT(fps), {NUMBER, .minimum = 1e-9, .maximum = 1e9}},
     {"kernel", "1", "B-spline of the momentum", STORE_KERNEL, AT(kernel), {.kind = PLAIN_TEXT, .choices = kernels}},
     {"laplacian", "1", "B-spline of the damage", STORE_KERNEL, AT(laplacian), {.kind = PLAIN_TEXT, .choices = kernels}},
-    {"particles", "1", "about how many, over all solids", STORE_INT64, AT(particles),
+    {"particles",
+     "1",
+     "about how many, over all solids",
+     STORE_INT64,
+     AT(particles),
      {NUMBER, .minimum = 1, .maximum = 5e8, .whole = true}},
-    {"particles_per_cell", "1", "how many fill a grid cell", STORE_DOUBLE, AT(particles_per_cell),
+    {"particles_per_cell",
+     "1",
+     "how many fill a grid cell",
+     STORE_DOUBLE,
+     AT(particles_per_cell),
      {NUMBER, .minimum = 0.125, .maximum = 1000}},
-    {"seed", "1", "of everything that is drawn at random", STORE_UINT64, AT(seed),
+    {"seed",
+     "1",
+     "of everything that is drawn at random",
+     STORE_UINT64,
+     AT(seed),
      {NUMBER, .minimum = 0, .maximum = 0x1p53, .whole = true}},
     {"title", "", "for people", STORE_TEXT, AT(title), {.kind = PLAIN_TEXT}},
-    {"transfer", "1", "what a particle's velocity carries", STORE_TRANSFER, AT(transfer),
+    {"transfer",
+     "1",
+     "what a particle's velocity carries",
+     STORE_TRANSFER,
+     AT(transfer),
      {.kind = PLAIN_TEXT, .choices = transfers}},
-    {"transfer_ratio", "1", "rpic: share of the symmetric part that is kept; flip: fraction", STORE_DOUBLE,
-     AT(transfer_ratio), {NUMBER, .maximum = 1}},
+    {"transfer_ratio",
+     "1",
+     "rpic: share of the symmetric part that is kept; flip: fraction",
+     STORE_DOUBLE,
+     AT(transfer_ratio),
+     {NUMBER, .maximum = 1}},
     {"units", "", "name of the system of units", STORE_TEXT, AT(units), {.kind = PLAIN_TEXT}},
 };
 

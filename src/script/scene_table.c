@@ -16,8 +16,10 @@ _Static_assert(SAMPLING_LATTICE == 0 && SAMPLING_JITTERED == 1 && SAMPLING_POISS
 static void copy_name(script *s, const place *p, const char *given, const char *kind, int number, char out[64]) {
     place at = place_key(p, "name");
     if (strlen(given) > 63) problem_place(s, &at, "a name of at most 63 bytes", given, NULL);
-    if (*given) snprintf(out, 64, "%.63s", given);
-    else snprintf(out, 64, "%s %d", kind, number);
+    if (*given)
+        snprintf(out, 64, "%.63s", given);
+    else
+        snprintf(out, 64, "%s %d", kind, number);
 }
 
 /* Pushes the value under `key` of the table at `index`; whether there is one. */
@@ -139,7 +141,11 @@ static void read_grip(script *s, int index, const place *p, int number) {
     if (!read_fields(s, index, p, fields, MOVER_FIELDS + 1)) return;
     read_mover(s, index, p, fields, &m);
     scene_grip *g = &s->scene->grips[s->scene->grip_count++];
-    *g = (scene_grip){.shape = m.shape, .velocity = m.velocity, .spin = m.spin, .start = m.start, .stop = m.stop,
+    *g = (scene_grip){.shape = m.shape,
+                      .velocity = m.velocity,
+                      .spin = m.spin,
+                      .start = m.start,
+                      .stop = m.stop,
                       .protects = protects != 0};
     memcpy(g->pivot, m.pivot, sizeof g->pivot);
     /* A grip without a velocity holds still: that is a velocity. */
@@ -150,7 +156,8 @@ static void read_grip(script *s, int index, const place *p, int number) {
 static void check_contact(script *s, const place *p, const field *friction, double contact) {
     place at = place_key(p, "friction");
     if (friction->given && contact == CONTACT_STICKY)
-        problem_place(s, &at, "no friction where contact is \"sticky\" (or contact = \"slip\" or \"separate\")", "some", NULL);
+        problem_place(s, &at, "no friction where contact is \"sticky\" (or contact = \"slip\" or \"separate\")", "some",
+                      NULL);
 }
 
 static scene_collider *add_collider(script *s, const place *p) {
@@ -285,11 +292,15 @@ static void read_key(script *s, const char *name, const place *p) {
             read_items(s, value, p, &lists[i]);
             return;
         }
-    if (strcmp(name, "domain") == 0) read_domain(s, value, p);
+    if (strcmp(name, "domain") == 0)
+        read_domain(s, value, p);
     else if (strcmp(name, "sheets") == 0)
-        problem_place(s, p, has_sheet_effects() ? "solids: scenes with sheets are not read yet" : "solids: this version has no engine for sheets",
+        problem_place(s, p,
+                      has_sheet_effects() ? "solids: scenes with sheets are not read yet"
+                                          : "solids: this version has no engine for sheets",
                       "sheets", NULL);
-    else report_unknown(s, p, name);
+    else
+        report_unknown(s, p, name);
 }
 
 void read_scene(lua_State *L, const char *file) {

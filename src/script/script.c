@@ -64,7 +64,8 @@ static void finish_loading(script *s) {
     report r;
     scene *sc = s->scene;
     if (s->problem_count == 0 && sc->particles == 0 && sc->dx == 0) {
-        place p = {.file = sc->file, .line = s->scene_line, .call = "scene", .depth = 1, .path = {{.key = "particles"}}};
+        place p = {
+            .file = sc->file, .line = s->scene_line, .call = "scene", .depth = 1, .path = {{.key = "particles"}}};
         problem_place(s, &p, "particles = a number of particles (or a grid spacing dx)", "nothing", NULL);
     }
     if (s->problem_count == 0) try_functions(s);

@@ -1,8 +1,10 @@
 /* Lua scenes and recipes: from a file's text to a validated `scene`.
  *
- * Scripts run in a sandbox: no os, io, debug, load of binary chunks; `require` reaches only the built-in module "sunder"
- * and files beside the scene; 5 s and 512 MiB by default, limits that no pcall loop and no pattern call can swallow; after loading, a write to a global or
- * to an upvalue from a function of time or place is an error. No C resource is held across a Lua error. */
+ * Scripts run in a sandbox: no os, io, debug, coroutines, load of binary chunks; `require` reaches only the built-in
+ * module "sunder" and files beside the scene; 5 s and 512 MiB by default, and no string over 16 MiB: limits that no pcall
+ * loop and no pattern call can swallow. Reading a name that does not exist is an error with the nearest one. After
+ * loading, a write to a global, an upvalue or a table from a function of time or place is an error (purity.c). No C
+ * resource is held across a Lua error. The C locale's decimal point is assumed (setlocale LC_NUMERIC stays "C"). */
 #ifndef SUNDER_SCRIPT_SCRIPT_H
 #define SUNDER_SCRIPT_SCRIPT_H
 
@@ -19,7 +21,7 @@ typedef struct script_options {
     const char *recipe;             /* --recipe NAME: replaces every body's material, NULL for none */
     const script_setting *settings; /* [setting_count] */
     int setting_count;
-    const char *resolved;           /* a text of script_resolved to pin parameters with, weaker than settings; NULL for none */
+    const char *resolved;           /* script_resolved's text, to pin parameters: weaker than settings; NULL for none */
     double time_limit;              /* seconds of processor time; 5 */
     size_t memory_limit;            /* bytes; 512 MiB */
 } script_options;
@@ -34,15 +36,16 @@ typedef struct script_reports {
     report items[SCRIPT_REPORTS];
 } script_reports;
 
-/* Loads, validates and resolves a scene file. On STATUS_OK *out owns the Lua state and the scene. On failure *out is NULL
- * and `reports` holds at least one entry; its first one's code is the return value. */
+/* Loads, validates and resolves a scene file; its functions of time and place are tried at a few times and points. On
+ * STATUS_OK *out owns the Lua state and the scene. On failure *out is NULL and `reports` holds at least one entry; its
+ * first one's code is the return value. */
 status script_load(const char *path, const script_options *options, script **out, script_reports *reports);
 
 /* The scene, owned by the script: its functions call into the script's Lua state. */
 scene *script_scene(script *s);
 
-/* The text of each file that took part (scene, recipes, modules): written into the run's folder. name is relative, without
- * "..": "tube_pull.lua", "recipes/tube.lua". */
+/* The text of each file that took part (scene, recipes, modules): written into the run's folder. name is relative,
+ * without "..": "tube_pull.lua", "recipes/tube.lua". */
 typedef struct script_source {
     const char *name, *text;
     size_t size;
@@ -50,7 +53,8 @@ typedef struct script_source {
 int script_source_count(const script *s);
 script_source script_source_at(const script *s, int index);
 
-/* A Lua text that, given as script_options.resolved, pins every resolved parameter ("return { pull = 0.1, … }"); owned by `s`. */
+/* A Lua text that, given as script_options.resolved, pins every resolved parameter ("return { pull = 0.1, … }"); owned
+ * by `s`. */
 const char *script_resolved(script *s);
 
 /* What the script printed, at most 8 KiB; owned by `s`. */

@@ -1,4 +1,5 @@
-/* --set and pinned values that no declared parameter took: keys of the scene, and knobs of effects by name or dotted path. */
+/* --set and pinned values that no declared parameter took: keys of the scene, and knobs of effects by name or dotted
+ * path. */
 #include "script/internal.h"
 
 #include "base/names.h"
@@ -24,9 +25,11 @@ static const effect *effect_at(int index) {
 /* "tube.damage.eta", "tube.density", "gravity.acceleration" */
 static void knob_path(const script *s, knob k, char *text) {
     const char *material = k.row == SCENE_SITE ? "" : s->scene->materials[k.row].name;
-    if (k.effect < 0) snprintf(text, PATH_SIZE, "%s.density", material);
-    else snprintf(text, PATH_SIZE, "%s%s%s.%s", material, *material ? "." : "", effect_at(k.effect)->name,
-                  effect_at(k.effect)->parameters[k.key].key);
+    if (k.effect < 0)
+        snprintf(text, PATH_SIZE, "%s.density", material);
+    else
+        snprintf(text, PATH_SIZE, "%s%s%s.%s", material, *material ? "." : "", effect_at(k.effect)->name,
+                 effect_at(k.effect)->parameters[k.key].key);
 }
 
 /* The names that a knob answers to; at most 6 of PATH_SIZE bytes. */
@@ -196,7 +199,8 @@ static void apply_knob(script *s, const script_override *o) {
         report_ambiguous(s, o, &q);
     } else if (q.off_count > 0) {
         char expected[128];
-        snprintf(expected, sizeof expected, "a key of an effect that is on ('%s' is off here)", effect_at(q.off.effect)->name);
+        snprintf(expected, sizeof expected, "a key of an effect that is on ('%s' is off here)",
+                 effect_at(q.off.effect)->name);
         report_setting(s, o, expected, "a key of one that is not", NULL);
     } else {
         char nearest[PATH_SIZE];

@@ -8,7 +8,7 @@
 #include <string.h>
 
 enum {
-    WEIGHT_LIMIT = 4096,     /* primitives in one shape: each is asked at every grid node near it */
+    WEIGHT_LIMIT = 4096,      /* primitives in one shape: each is asked at every grid node near it */
     MADE_LIMIT = 1000 * 1000, /* units: the scene's arena does not count as Lua's memory */
 };
 
@@ -123,24 +123,42 @@ typedef struct shape_kind {
 #define WORD(member) offsetof(shape_words, member)
 
 static const shape_kind kinds[] = {
-    {"sphere", make_sphere, {{"center", FIELD_VECTOR, false, WORD(center)}, {"radius", FIELD_SIZE, true, WORD(radius)}}},
-    {"box", make_box,
-     {{"min", FIELD_VECTOR, false, WORD(minimum)}, {"max", FIELD_VECTOR, false, WORD(maximum)},
-      {"center", FIELD_VECTOR, false, WORD(center)}, {"size", FIELD_VECTOR, false, WORD(size)}}},
-    {"cylinder", make_cylinder,
-     {{"axis", FIELD_AXIS, true, WORD(axis)}, {"radius", FIELD_SIZE, true, WORD(radius)},
-      {"length", FIELD_SIZE, true, WORD(length)}, {"center", FIELD_VECTOR, false, WORD(center)}}},
-    {"tube", make_tube,
-     {{"axis", FIELD_AXIS, true, WORD(axis)}, {"outer", FIELD_SIZE, true, WORD(outer)},
-      {"inner", FIELD_REAL, true, WORD(inner)}, {"length", FIELD_SIZE, true, WORD(length)},
-      {"center", FIELD_VECTOR, false, WORD(center)}, {"taper", FIELD_SIZE, false, WORD(taper)}}},
-    {"capsule", make_capsule,
-     {{"from", FIELD_VECTOR, true, WORD(from)}, {"to", FIELD_VECTOR, true, WORD(to)},
+    {"sphere",
+     make_sphere,
+     {{"center", FIELD_VECTOR, false, WORD(center)}, {"radius", FIELD_SIZE, true, WORD(radius)}}},
+    {"box",
+     make_box,
+     {{"min", FIELD_VECTOR, false, WORD(minimum)},
+      {"max", FIELD_VECTOR, false, WORD(maximum)},
+      {"center", FIELD_VECTOR, false, WORD(center)},
+      {"size", FIELD_VECTOR, false, WORD(size)}}},
+    {"cylinder",
+     make_cylinder,
+     {{"axis", FIELD_AXIS, true, WORD(axis)},
+      {"radius", FIELD_SIZE, true, WORD(radius)},
+      {"length", FIELD_SIZE, true, WORD(length)},
+      {"center", FIELD_VECTOR, false, WORD(center)}}},
+    {"tube",
+     make_tube,
+     {{"axis", FIELD_AXIS, true, WORD(axis)},
+      {"outer", FIELD_SIZE, true, WORD(outer)},
+      {"inner", FIELD_REAL, true, WORD(inner)},
+      {"length", FIELD_SIZE, true, WORD(length)},
+      {"center", FIELD_VECTOR, false, WORD(center)},
+      {"taper", FIELD_SIZE, false, WORD(taper)}}},
+    {"capsule",
+     make_capsule,
+     {{"from", FIELD_VECTOR, true, WORD(from)},
+      {"to", FIELD_VECTOR, true, WORD(to)},
       {"radius", FIELD_SIZE, true, WORD(radius)}}},
-    {"torus", make_torus,
-     {{"axis", FIELD_AXIS, true, WORD(axis)}, {"major", FIELD_SIZE, true, WORD(major)},
-      {"minor", FIELD_SIZE, true, WORD(minor)}, {"center", FIELD_VECTOR, false, WORD(center)}}},
-    {"half_space", make_half_space,
+    {"torus",
+     make_torus,
+     {{"axis", FIELD_AXIS, true, WORD(axis)},
+      {"major", FIELD_SIZE, true, WORD(major)},
+      {"minor", FIELD_SIZE, true, WORD(minor)},
+      {"center", FIELD_VECTOR, false, WORD(center)}}},
+    {"half_space",
+     make_half_space,
      {{"point", FIELD_VECTOR, false, WORD(point)}, {"normal", FIELD_AXIS, true, WORD(normal)}}},
 };
 
@@ -157,7 +175,9 @@ int api_shape(lua_State *L) {
     int count = 0;
     for (; count < SHAPE_FIELDS && kind->fields[count].key; count++) {
         const shape_field *f = &kind->fields[count];
-        fields[count] = (field){.key = f->key, .kind = f->kind, .required = f->required,
+        fields[count] = (field){.key = f->key,
+                                .kind = f->kind,
+                                .required = f->required,
                                 .number = (double *)(void *)((char *)&words + f->offset)};
     }
     place here = s->here;
@@ -182,7 +202,8 @@ const shape *read_shape(script *s, int index, const place *p) {
     return NULL;
 }
 
-/* Adds the shapes of arguments `from` … top, each a shape or a list of shapes, to list[WEIGHT_LIMIT]. False: one was wrong. */
+/* Adds the shapes of arguments `from` … top, each a shape or a list of shapes, to list[WEIGHT_LIMIT]. False: one was
+ * wrong. */
 static bool gather(script *s, int from, const place *p, const shape **list, int *count, int *weight) {
     lua_State *L = s->L;
     int top = lua_gettop(L);
@@ -192,8 +213,10 @@ static bool gather(script *s, int from, const place *p, const shape **list, int 
         int items = is_list ? read_list(s, i, p, WEIGHT_LIMIT, "shapes, or a list of shapes") : 1;
         if (items < 0) return false;
         for (int k = 1; k <= items; k++) {
-            if (is_list) lua_rawgeti(L, i, k);
-            else lua_pushvalue(L, i);
+            if (is_list)
+                lua_rawgeti(L, i, k);
+            else
+                lua_pushvalue(L, i);
             place at = place_index(p, k);
             const shape_value *v = shape_at(L, -1);
             const shape *item = read_shape(s, -1, is_list ? &at : p);
@@ -235,9 +258,9 @@ int api_combine(lua_State *L) {
     }
     if (too_deep(s, &here, list, count)) return push_wrong(L);
     arena *memory = s->scene->memory;
-    const shape *made = difference                    ? shape_difference(memory, list[0], list + 1, count - 1)
+    const shape *made = difference                   ? shape_difference(memory, list[0], list + 1, count - 1)
                         : strcmp(kind, "union") == 0 ? shape_union(memory, list, count)
-                                                      : shape_intersection(memory, list, count);
+                                                     : shape_intersection(memory, list, count);
     return push_shape(L, made, weight, count + 1);
 }
 

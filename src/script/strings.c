@@ -11,7 +11,10 @@ static bool go_on(void *context, size_t steps) {
 }
 
 static pattern prepare(lua_State *L, const char *subject, size_t size, const char *text, size_t length) {
-    return (pattern){.subject = subject, .subject_end = subject + size, .end = text + length, .go_on = go_on,
+    return (pattern){.subject = subject,
+                     .subject_end = subject + size,
+                     .end = text + length,
+                     .go_on = go_on,
                      .context = guard_of(L)};
 }
 
@@ -31,8 +34,10 @@ static void push_capture(lua_State *L, const pattern *m, int index, const char *
     if (index >= m->capture_count) luaL_error(L, "invalid capture index %%%d", index + 1);
     const pattern_capture *c = &m->captures[index];
     if (c->length == PATTERN_OPEN) luaL_error(L, "unfinished capture");
-    if (c->length == PATTERN_POSITION) lua_pushinteger(L, c->start - m->subject + 1);
-    else lua_pushlstring(L, c->start, (size_t)c->length);
+    if (c->length == PATTERN_POSITION)
+        lua_pushinteger(L, c->start - m->subject + 1);
+    else
+        lua_pushlstring(L, c->start, (size_t)c->length);
 }
 
 /* All captures; the whole match when there are none and `whole`. */
@@ -95,7 +100,8 @@ static int string_match(lua_State *L) {
     return search(L, false);
 }
 
-/* ---- gmatch: upvalues subject, pattern, offset to start from, end of the last match (−1: none) --------------------- */
+/* ---- gmatch: upvalues subject, pattern, offset to start from, end of the last match (−1: none) ---------------------
+ */
 
 int gmatch_step(lua_State *L) {
     size_t size, length;
@@ -241,14 +247,18 @@ static int string_format(lua_State *L) {
     const char *text = luaL_checklstring(L, 1, &length), *end = text + length;
     for (const char *p = text; p < end; p++) {
         if (*p != '%') continue;
-        for (p++; p < end && strchr("-+ #0123456789.", *p) && *p; p++) {}
-        if (p < end && *p == 'p') return luaL_error(L, "invalid conversion '%%p' to 'format': addresses differ from run to run");
+        for (p++; p < end && strchr("-+ #0123456789.", *p) && *p; p++) {
+        }
+        if (p < end && *p == 'p')
+            return luaL_error(L, "invalid conversion '%%p' to 'format': addresses differ from run to run");
     }
     int top = lua_gettop(L);
     for (int i = 2; i <= top; i++) {
         push_text(L, i);
-        if (lua_type(L, i) == LUA_TTABLE || lua_type(L, i) == LUA_TFUNCTION) lua_replace(L, i);
-        else lua_pop(L, 1);
+        if (lua_type(L, i) == LUA_TTABLE || lua_type(L, i) == LUA_TFUNCTION)
+            lua_replace(L, i);
+        else
+            lua_pop(L, 1);
     }
     lua_pushvalue(L, lua_upvalueindex(1));
     lua_insert(L, 1);

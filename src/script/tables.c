@@ -1,8 +1,8 @@
 /* pairs, next and the table library, made for scenes: the same order every time, and no call that runs for ever.
  *
- * Lua's own order of names depends on a random seed, and its sort picks pivots by the clock. Here pairs and next go through
- * numbers first, then names, then booleans, each in ascending order, and sort is a stable merge sort. Ranges are limited,
- * because a table may claim any length. */
+ * Lua's own order of names depends on a random seed, and its sort picks pivots by the clock. Here pairs and next go
+ * through numbers first, then names, then booleans, each in ascending order, and sort is a stable merge sort. Ranges
+ * are limited, because a table may claim any length. */
 #include "script/internal.h"
 
 #include <stdlib.h>
@@ -60,10 +60,14 @@ static int compare_for_sorting(const void *a, const void *b) {
 
 /* Pushes the key in its Lua form. Names are still in the table, so nothing new is made. */
 static void push_key(lua_State *L, const ordered_key *k) {
-    if (k->rank == RANK_NAME) lua_pushlstring(L, k->text, k->size);
-    else if (k->rank == RANK_BOOLEAN) lua_pushboolean(L, k->number != 0);
-    else if (k->whole) lua_pushinteger(L, k->integer);
-    else lua_pushnumber(L, k->number);
+    if (k->rank == RANK_NAME)
+        lua_pushlstring(L, k->text, k->size);
+    else if (k->rank == RANK_BOOLEAN)
+        lua_pushboolean(L, k->number != 0);
+    else if (k->whole)
+        lua_pushinteger(L, k->integer);
+    else
+        lua_pushnumber(L, k->number);
 }
 
 /* Pushes a list of the table's keys in order; returns how many. */
@@ -184,8 +188,8 @@ static int table_insert(lua_State *L) {
 
 static int table_remove(lua_State *L) {
     lua_Integer length = checked_length(L, 1), position = luaL_optinteger(L, 2, length);
-    if (lua_gettop(L) > 1) luaL_argcheck(L, position == length || (position >= 1 && position <= length + 1), 2,
-                                         "position out of bounds");
+    if (lua_gettop(L) > 1)
+        luaL_argcheck(L, position == length || (position >= 1 && position <= length + 1), 2, "position out of bounds");
     lua_geti(L, 1, position);
     check_range(L, position, length);
     for (; position < length; position++) {

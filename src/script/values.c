@@ -12,9 +12,12 @@
 /* ---- one value --------------------------------------------------------------------------------------------------- */
 
 static void describe_number(lua_State *L, int index, char *text, size_t size) {
-    if (lua_isinteger(L, index)) snprintf(text, size, "%lld", (long long)lua_tointeger(L, index));
-    else if (isnan(lua_tonumber(L, index))) snprintf(text, size, "a number that is not one (nan)");
-    else snprintf(text, size, "%.14g", lua_tonumber(L, index));
+    if (lua_isinteger(L, index))
+        snprintf(text, size, "%lld", (long long)lua_tointeger(L, index));
+    else if (isnan(lua_tonumber(L, index)))
+        snprintf(text, size, "a number that is not one (nan)");
+    else
+        snprintf(text, size, "%.14g", lua_tonumber(L, index));
 }
 
 void describe_value(lua_State *L, int index, char *text, size_t size) {
@@ -27,9 +30,12 @@ void describe_value(lua_State *L, int index, char *text, size_t size) {
     case LUA_TTABLE: snprintf(text, size, "a table"); break;
     case LUA_TFUNCTION: snprintf(text, size, "a function"); break;
     default:
-        if (luaL_testudata(L, index, META_SHAPE)) snprintf(text, size, "a shape");
-        else if (luaL_testudata(L, index, META_FIBRES)) snprintf(text, size, "fibres");
-        else snprintf(text, size, "a %s", luaL_typename(L, index));
+        if (luaL_testudata(L, index, META_SHAPE))
+            snprintf(text, size, "a shape");
+        else if (luaL_testudata(L, index, META_FIBRES))
+            snprintf(text, size, "fibres");
+        else
+            snprintf(text, size, "a %s", luaL_typename(L, index));
     }
 }
 
@@ -40,8 +46,10 @@ static bool vector_from_table(lua_State *L, int index, double out[3]) {
     while (lua_next(L, index)) {
         bool component = lua_isinteger(L, -2) && lua_type(L, -1) == LUA_TNUMBER;
         lua_Integer i = component ? lua_tointeger(L, -2) : 0;
-        if (i >= 1 && i <= 3) out[i - 1] = lua_tonumber(L, -1), count++;
-        else count = 4;
+        if (i >= 1 && i <= 3)
+            out[i - 1] = lua_tonumber(L, -1), count++;
+        else
+            count = 4;
         lua_pop(L, 1);
         if (count > 3) {
             lua_pop(L, 1);
@@ -90,7 +98,8 @@ static bool numbers_from_text(const char *text, double *out, int count) {
         char *end;
         out[i] = strtod(text, &end);
         if (end == text) return false;
-        for (text = end; isspace((unsigned char)*text); text++) {}
+        for (text = end; isspace((unsigned char)*text); text++) {
+        }
         if (i < count - 1 && *text++ != ',') return false;
     }
     if (braces && *text++ != '}') return false;
@@ -115,12 +124,18 @@ static void append(char *text, size_t size, const char *more) {
 static void describe_range(const plain_rule *rule, char *text, size_t size) {
     char piece[96];
     bool low = rule->minimum > -HUGE_VAL, high = rule->maximum < HUGE_VAL;
-    if (rule->above && high) snprintf(piece, sizeof piece, " above %g, at most %g", rule->minimum, rule->maximum);
-    else if (rule->above) snprintf(piece, sizeof piece, " above %g", rule->minimum);
-    else if (low && high) snprintf(piece, sizeof piece, " from %g to %g", rule->minimum, rule->maximum);
-    else if (low) snprintf(piece, sizeof piece, " of at least %g", rule->minimum);
-    else if (high) snprintf(piece, sizeof piece, " of at most %g", rule->maximum);
-    else piece[0] = '\0';
+    if (rule->above && high)
+        snprintf(piece, sizeof piece, " above %g, at most %g", rule->minimum, rule->maximum);
+    else if (rule->above)
+        snprintf(piece, sizeof piece, " above %g", rule->minimum);
+    else if (low && high)
+        snprintf(piece, sizeof piece, " from %g to %g", rule->minimum, rule->maximum);
+    else if (low)
+        snprintf(piece, sizeof piece, " of at least %g", rule->minimum);
+    else if (high)
+        snprintf(piece, sizeof piece, " of at most %g", rule->maximum);
+    else
+        piece[0] = '\0';
     append(text, size, piece);
 }
 
@@ -203,7 +218,8 @@ bool read_table(script *s, int index, const place *p, const char *expected) {
         problem_place(s, p, expected, found, NULL);
         return false;
     }
-    if (luaL_getmetafield(s->L, index, "__index") != LUA_TNIL || luaL_getmetafield(s->L, index, "__pairs") != LUA_TNIL) {
+    if (luaL_getmetafield(s->L, index, "__index") != LUA_TNIL ||
+        luaL_getmetafield(s->L, index, "__pairs") != LUA_TNIL) {
         lua_pop(s->L, 1);
         problem_place(s, p, "a plain table", "one with a metatable, whose keys would go unseen", NULL);
         return false;

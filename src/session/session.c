@@ -59,8 +59,8 @@ static status restore(session *s, report *r) {
     status code = checkpoint_read_last(s->folder, &records, &frame, &warning, r);
     if (code == STATUS_OK) code = simulation_restore(s->simulation, &records, r);
     record_clear(&records);
+    if (code == STATUS_OK) code = ledger_reopen(s->ledger, s->id, r); /* refuses a run that still lives: its frames stay */
     if (code == STATUS_OK) code = frame_truncate(s->folder, frame, r);
-    if (code == STATUS_OK) code = ledger_reopen(s->ledger, s->id, r);
     if (code != STATUS_OK) return code;
     if (warning.code != STATUS_OK) {
         char text[512];
@@ -123,21 +123,30 @@ static status begin_row(session *s, report *r) {
     return ledger_begin(s->ledger, &run, s->id, r);
 }
 
-/* A new run: its row, its folder, its scripts. The row ends as failed when the folder cannot be made. */
+/* The row, its folder's name and its parameters are one transaction: a row without them is never seen. */
+static status begin_rows(session *s, report *r) {
+    status code = ledger_batch_begin(s->ledger, r);
+    if (code != STATUS_OK) return code;
+    code = begin_row(s, r);
+    if (code == STATUS_OK && !s->options.output) {
+        code = choose_folder(s, r);
+        if (code == STATUS_OK) code = ledger_set_output(s->ledger, s->id, s->folder, r);
+    }
+    if (code == STATUS_OK) code = log_parameters(s, r);
+    return ledger_batch_end(s->ledger, code, r);
+}
+
+/* A new run: its folder, its row, its scripts. A folder that was asked for is made before the row, so that a wrong name leaves none;
+ * after that, a row whose run cannot start ends as failed. */
 static status begin(session *s, report *r) {
     status code = STATUS_OK;
     if (s->options.output) {
         code = choose_folder(s, r);
         if (code == STATUS_OK) code = run_folder_create(s->folder, false, r);
     }
-    if (code == STATUS_OK) code = begin_row(s, r);
+    if (code == STATUS_OK) code = begin_rows(s, r);
     if (code != STATUS_OK) return code;
-    if (!s->options.output) {
-        code = choose_folder(s, r);
-        if (code == STATUS_OK) code = run_folder_create(s->folder, false, r);
-        if (code == STATUS_OK) code = ledger_set_output(s->ledger, s->id, s->folder, r);
-    }
-    if (code == STATUS_OK) code = log_parameters(s, r);
+    if (!s->options.output) code = run_folder_create(s->folder, false, r);
     if (code == STATUS_OK) code = sources_write(s, r);
     if (code == STATUS_OK) code = request_write(s, r);
     if (code == STATUS_OK) return code;

@@ -1,6 +1,7 @@
 #include "sim/scene.h"
 
 #include "base/names.h"
+#include "solid/moduli.h"
 #include "solid/solid.h"
 
 #include <math.h>
@@ -55,14 +56,47 @@ int64_t scene_frames(const scene *s) {
     return (int64_t)llround(s->duration * s->fps);
 }
 
+/* The first effect from index `from` on that a material names and that answers a need; -1. */
+static int find_supplier(const scene_material *m, const char *need, int from) {
+    int count;
+    const effect *const *effects = effect_catalogue(&count);
+    for (int e = from; e < count; e++)
+        if (m->effects[e].on && effect_supplies(effects[e], need)) return e;
+    return -1;
+}
+
+/* "elastic = { … } or corotated = { … }": what a scene may write to meet a need. */
+static void describe_suppliers(const char *need, char *text, size_t size) {
+    int count;
+    const effect *const *effects = effect_catalogue(&count);
+    size_t used = 0;
+    text[0] = '\0';
+    for (int e = 0; e < count && used < size; e++)
+        if (effect_supplies(effects[e], need))
+            used += (size_t)snprintf(text + used, size - used, "%s%s = { … }", used ? " or " : "", effects[e]->name);
+}
+
+/* Of effects that provide the same a material names one. */
+static status check_alternatives(const scene_material *m, const effect *const *effects, int count, report *r) {
+    for (int e = 0; e < count; e++) {
+        if (!m->effects[e].on || !effects[e]->provides) continue;
+        int other = find_supplier(m, effects[e]->provides, e + 1);
+        if (other < 0) continue;
+        char expected[128], found[128];
+        snprintf(expected, sizeof expected, "one of '%s' and '%s' (both are %s)", effects[e]->name, effects[other]->name, effects[e]->provides);
+        snprintf(found, sizeof found, "both in the material '%.60s'", m->name);
+        return report_input(r, m->file, m->line, effects[other]->name, expected, found, NULL);
+    }
+    return STATUS_OK;
+}
+
 /* The effects that a material names must find those they need. */
 static status check_needs(const scene_material *m, const effect *const *effects, int count, report *r) {
     for (int e = 0; e < count; e++) {
-        if (!m->effects[e].on || !effects[e]->needs) continue;
-        int need = effect_index(effects[e]->needs);
-        if (need >= 0 && m->effects[need].on) continue;
-        char expected[128], found[128];
-        snprintf(expected, sizeof expected, "the effect '%s' beside '%s'", effects[e]->needs, effects[e]->name);
+        if (!m->effects[e].on || !effects[e]->needs || find_supplier(m, effects[e]->needs, 0) >= 0) continue;
+        char suppliers[96], expected[192], found[128];
+        describe_suppliers(effects[e]->needs, suppliers, sizeof suppliers);
+        snprintf(expected, sizeof expected, "%s beside '%s': %s", effects[e]->needs, effects[e]->name, suppliers);
         snprintf(found, sizeof found, "a material '%.60s' without it", m->name);
         return report_input(r, m->file, m->line, effects[e]->name, expected, found, NULL);
     }
@@ -77,13 +111,16 @@ static status check_material(scene_material *m, report *r) {
         snprintf(found, sizeof found, "%g", m->density);
         return report_input(r, m->file, m->line, "density", "a positive number", found, NULL);
     }
-    status code = check_needs(m, effects, count, r);
+    status code = check_alternatives(m, effects, count, r);
+    if (code == STATUS_OK) code = check_needs(m, effects, count, r);
     for (int e = 0; e < count && code == STATUS_OK; e++)
         if (m->effects[e].on && effects[e]->scope == SCOPE_MATERIAL)
             code = effect_values_check(effects[e], &m->effects[e], m->effects, m->file, m->line, r);
-    if (code == STATUS_OK && !m->effects[effect_index("elastic")].on)
-        return report_input(r, m->file, m->line, "elastic", "a material with elasticity: elastic = { E = …, nu = … }", "none", NULL);
-    return code;
+    if (code != STATUS_OK || find_supplier(m, ELASTICITY, 0) >= 0) return code;
+    char suppliers[96], expected[128];
+    describe_suppliers(ELASTICITY, suppliers, sizeof suppliers);
+    snprintf(expected, sizeof expected, "a material with elasticity: %s", suppliers);
+    return report_input(r, m->file, m->line, "elastic", expected, "none", NULL);
 }
 
 /* Damage that follows fibres, and fibres themselves, need directions. */

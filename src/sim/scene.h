@@ -12,7 +12,7 @@
 
 #include <stdint.h>
 
-enum { SCENE_MATERIALS = 16, SCENE_BODIES = 32, SCENE_GRIPS = 32, SCENE_COLLIDERS = 32, SCENE_PARAMETERS = 128 };
+enum { SCENE_MATERIALS = 16, SCENE_BODIES = 32, SCENE_GRIPS = 32, SCENE_COLLIDERS = 32, SCENE_PARAMETERS = 512 };
 
 /* A constant, or a function of `inputs` reals (time, or x y z) giving `outputs` reals. */
 typedef struct scene_function {

@@ -53,6 +53,7 @@ static void plan_fields(solid *s) {
 }
 
 void solid_constants_refresh(solid *s) {
+    s->implicit_tolerance = 1;
     for (int m = 0; m < s->definition.material_count; m++) {
         const solid_material *material = &s->definition.materials[m];
         s->material_mask[m] = 0;
@@ -61,6 +62,7 @@ void solid_constants_refresh(solid *s) {
             s->material_mask[m] |= 1u << e;
             if (effects[e]->stages->constants)
                 effects[e]->stages->constants(material->effects, &s->definition, material->protects, s->constants[m][e]);
+            if (effects[e]->stages->declare) effects[e]->stages->declare(s, m, material->effects);
         }
     }
 }
@@ -164,6 +166,15 @@ static status sort(solid *s, report *r) {
     return code;
 }
 
+static status solve_effects(solid *s, real dt, report *r) {
+    for (int e = 0; e < s->effect_count; e++) {
+        if (!(s->mask >> e & 1) || !effects[e]->stages->solve) continue;
+        status code = effects[e]->stages->solve(s, dt, r);
+        if (code != STATUS_OK) return code;
+    }
+    return STATUS_OK;
+}
+
 static status step(solid *s, double dt, solid_fault *fault, report *r) {
     if (!s->sorted) {
         status code = sort(s, r);
@@ -172,6 +183,8 @@ static status step(solid *s, double dt, solid_fault *fault, report *r) {
     double t0 = now();
     transfer_to_grid(s, (real)dt);
     double t1 = now();
+    status solved = solve_effects(s, (real)dt, r);
+    if (solved != STATUS_OK) return solved;
     grid_update(s, (real)dt);
     double t2 = now();
     transfer_to_particles(s, (real)dt);
@@ -196,7 +209,7 @@ static double bytes_per_particle(const solid *s) {
     double bytes = (double)s->pack_capacity * PACK * sizeof *s->id;
     for (int i = 0; i < s->field_count; i++) bytes += (double)s->pack_capacity * s->fields[i].components * PACK * sizeof(real);
     double sort_bytes = (double)s->count * (2 * sizeof *s->sort_keys + sizeof *s->permute);
-    double node_reals = NODE + (s->damage_grid ? DAMAGE_NODE : 0) + (s->old_grid ? NODE : 0);
+    double node_reals = NODE + (s->damage_grid ? DAMAGE_NODE : 0) + (s->old_grid ? NODE : 0) + (s->implicit_grid ? 9 : 0);
     double grid_bytes = (double)s->slot_capacity * BLOCK_NODES * node_reals * sizeof(real);
     double tables = (double)s->tile_capacity * (sizeof *s->tiles + sizeof *s->tile_results) +
                     (double)s->block_capacity * sizeof *s->blocks + (double)s->hash_capacity * 12;
@@ -214,6 +227,7 @@ static int stage_names(uint32_t mask, char (*text)[48], int limit) {
         size_t offset;
     } places[] = {
         {"p2g", "degrade", offsetof(solid_stages, degrade)}, {NULL, "stress", offsetof(solid_stages, stress)},
+        {"solve", "solve", offsetof(solid_stages, solve)},
         {"grid", "grid", offsetof(solid_stages, grid)},      {"g2p", "update", offsetof(solid_stages, update)},
         {NULL, "degrade", offsetof(solid_stages, degrade)},  {NULL, "wave", offsetof(solid_stages, wave)},
     };

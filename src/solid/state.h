@@ -70,7 +70,13 @@ typedef struct solid_worker {
     real window[WINDOW_NODES * NODE];
     real old_window[WINDOW_NODES * NODE]; // FLIP only
     real damage_window[WINDOW_NODES * DAMAGE_NODE];
+    real implicit_window[WINDOW_NODES * 4]; // implicit damage only
 } solid_worker;
+
+/* What the implicit solve needs of a material. */
+typedef struct implicit_material {
+    real eta, length2;
+} implicit_material;
 
 /* Per-block results of a pass, reduced in block order so that bits do not depend on threads. */
 typedef struct block_result {
@@ -91,6 +97,14 @@ struct solid {
     real constants[SOLID_MATERIALS][EFFECT_LIMIT][CONSTANTS];
     uint32_t material_mask[SOLID_MATERIALS];
     bool transfers_damage; /* some material has the damage effect */
+    bool implicit_on;      /* some material's damage is implicit */
+    bool material_implicit[SOLID_MATERIALS];
+    implicit_material implicit_materials[SOLID_MATERIALS];
+    double implicit_tolerance;
+    int64_t implicit_solves, implicit_iterations;
+    int32_t implicit_capacity;
+    real *implicit_grid;   // [implicit_capacity] planes of nodes, implicit.c
+    double *implicit_sums; // [implicit_capacity][2]
 
     int64_t count;
     int32_t pack_count, pack_capacity;
@@ -160,6 +174,10 @@ typedef struct solid_stages {
     void (*wave)(tile_work *w);       /* after update: adds to scratch->wave_modulus */
     void (*grid)(const grid_work *w); /* on velocities */
     void (*energy)(tile_work *w);     /* measures */
+    /* Between the way to the grid and the grid's update, once a step: for what must be solved for. */
+    status (*solve)(solid *s, real dt, report *r);
+    /* Tells the engine what a material needs of it beyond constants; called after `constants`. */
+    void (*declare)(solid *s, int material, const effect_values *all);
 } solid_stages;
 
 /* Where stages load and store: component c of sub-vector `part` of the tile's pack k. */
@@ -186,6 +204,13 @@ void grid_update(solid *s, real dt);
 void transfer_to_grid(solid *s, real dt);
 void transfer_to_particles(solid *s, real dt);
 void transfer_limits(solid *s); /* the momentum limit of a state that no step has reached: at the start, after a knob */
+/* implicit.c: memory for a number of slots; the solve; then a block's increments and their sum at a tile's particles, left in
+ * scratch->laplacian */
+status implicit_reserve(solid *s, int32_t slots, report *r);
+void implicit_free(solid *s);
+status implicit_solve(solid *s, real dt, report *r);
+void implicit_load_window(const solid *s, const solid_block *b, real *window);
+void implicit_gather(const tile_work *w, const real *window);
 /* measure.c */
 status solid_measure(const solid *s, solid_measures *m, report *r);
 /* snapshot.c */

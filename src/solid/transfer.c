@@ -6,12 +6,10 @@
  * and takes back v = Σ w v_i, L = D⁻¹ Σ w v_i (x_i − x_p)ᵀ. Distances are in units of dx; the four momenta-and-mass of four nodes along z
  * are one row. The damage channel, Σ w d and Σ w, rides along with its own kernel. */
 #include "base/threads.h"
+#include "solid/kernels.h"
 #include "solid/order.h"
-#include "solid/tensor.h"
 
 #include <stddef.h>
-
-enum { STRIDE_X = WINDOW * WINDOW, STRIDE_Y = WINDOW };
 
 /* Slots of a particle's record for scattering momentum and for gathering velocity. */
 enum {
@@ -19,61 +17,6 @@ enum {
     P2G_BASE = 0, P2G_X = 4, P2G_Y = 8, P2G_Z = 12, P2G_WZ = 16, P2G_WX = 20, P2G_WY = 24, P2G_NODE = 28, P2G_DAMAGE = 29,
     G2P_WX = 0, G2P_WY = 4, G2P_WZ = 8, G2P_OFFSET = 12, G2P_NODE = 15, G2P_OUT = 16,
 };
-
-/* B-spline weights of the nodes 0…n−1 for a particle at distance u (in dx) from the first of them. */
-SIMD_INLINE void quadratic_weights(vec u, vec w[4]) {
-    vec a = (real)1.5 - u, b = u - 1, c = u - (real)0.5;
-    w[0] = (real)0.5 * a * a;
-    w[1] = (real)0.75 - b * b;
-    w[2] = (real)0.5 * c * c;
-    w[3] = vec_all(0);
-}
-
-SIMD_INLINE void cubic_weights(vec u, vec w[4]) {
-    vec t = u - 1, s = 1 - t;
-    const real sixth = (real)(1.0 / 6.0);
-    w[0] = sixth * s * s * s;
-    w[1] = (real)(2.0 / 3.0) - t * t * (1 - (real)0.5 * t);
-    w[2] = (real)(2.0 / 3.0) - s * s * (1 - (real)0.5 * s);
-    w[3] = sixth * t * t * t;
-}
-
-/* Second derivatives of the same. */
-SIMD_INLINE void quadratic_curvatures(vec w[4]) {
-    w[0] = vec_all(1);
-    w[1] = vec_all(-2);
-    w[2] = vec_all(1);
-    w[3] = vec_all(0);
-}
-
-SIMD_INLINE void cubic_curvatures(vec u, vec w[4]) {
-    vec t = u - 1, s = 1 - t;
-    w[0] = s;
-    w[1] = 3 * t - 2;
-    w[2] = 3 * s - 2;
-    w[3] = t;
-}
-
-SIMD_INLINE void kernel_weights(kernel_kind kernel, vec u, vec w[4]) {
-    if (kernel == KERNEL_QUADRATIC) quadratic_weights(u, w);
-    else cubic_weights(u, w);
-}
-
-/* The first node of each axis (in block coordinates) and the distances from it. */
-typedef struct kernel_place {
-    vec3v base, u;
-} kernel_place;
-
-SIMD_INLINE kernel_place kernel_locate(kernel_kind kernel, vec3v x) {
-    real shift = kernel == KERNEL_QUADRATIC ? (real)0.5 : 1;
-    vec3v base = {vec_floor(x.x - shift), vec_floor(x.y - shift), vec_floor(x.z - shift)};
-    return (kernel_place){base, {x.x - base.x, x.y - base.y, x.z - base.z}};
-}
-
-/* Index of the first node within the window, as a real (exact: below 1000). */
-SIMD_INLINE vec window_index(vec3v base) {
-    return (base.x - (real)WINDOW_LOW) * (real)STRIDE_X + (base.y - (real)WINDOW_LOW) * (real)STRIDE_Y + (base.z - (real)WINDOW_LOW);
-}
 
 /* Writes lanes of `value` into column `slot` of the records of a part. */
 SIMD_INLINE void record_put(real *records, int first, int slot, vec value) {
@@ -207,31 +150,6 @@ SIMD_INLINE void scatter_damage(const tile_work *w, kernel_kind kernel, int node
     }
 }
 
-/* Exchanges a block's window with the grid, node row by node row: `to_grid` adds, else loads. Only −1 … 6 or −2 … 7 is
- * touched: what colouring keeps apart. */
-SIMD_INLINE void exchange_window(const solid_block *b, real *window, real *grid, int reals, int slot_reals, bool wide, bool to_grid) {
-    int low = wide ? WINDOW_LOW : WINDOW_LOW + 1, high = wide ? WINDOW_LOW + WINDOW : WINDOW_LOW + WINDOW - 1;
-    for (int n = 0; n < NEIGHBOURS; n++) {
-        if (b->neighbour[n] < 0) continue;
-        int begin[3], end[3], o[3] = {n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1};
-        for (int c = 0; c < 3; c++) {
-            begin[c] = o[c] * BLOCK > low ? o[c] * BLOCK : low;
-            end[c] = o[c] * BLOCK + BLOCK < high ? o[c] * BLOCK + BLOCK : high;
-        }
-        real *slot = grid + (int64_t)b->neighbour[n] * slot_reals;
-        for (int x = begin[0]; x < end[0]; x++)
-            for (int y = begin[1]; y < end[1]; y++) {
-                real *in_window = window + (((x - WINDOW_LOW) * WINDOW + y - WINDOW_LOW) * WINDOW + begin[2] - WINDOW_LOW) * reals;
-                real *in_grid = slot + ((x - o[0] * BLOCK) * BLOCK * BLOCK + (y - o[1] * BLOCK) * BLOCK + begin[2] - o[2] * BLOCK) * reals;
-                int count = (end[2] - begin[2]) * reals;
-                if (to_grid)
-                    for (int i = 0; i < count; i++) in_grid[i] += in_window[i];
-                else
-                    for (int i = 0; i < count; i++) in_window[i] = in_grid[i];
-            }
-    }
-}
-
 static void call_stage(tile_work *w, size_t stage_offset) {
     const solid *s = w->state;
     for (int e = 0; e < s->effect_count; e++) {
@@ -262,7 +180,7 @@ SIMD_INLINE void block_to_grid(transfer_context *t, int32_t block_index, int wor
     solid *s = t->state;
     const solid_block *b = &s->blocks[block_index];
     solid_worker *own = &s->workers[worker];
-    bool wide = kernel == KERNEL_CUBIC || (damage && laplacian == KERNEL_CUBIC);
+    bool wide = kernels_are_wide(kernel, laplacian, damage);
     int nodes = kernel == KERNEL_QUADRATIC ? 3 : 4;
     memset(own->window, 0, sizeof own->window);
     if (s->old_grid) memset(own->old_window, 0, sizeof own->old_window);
@@ -491,16 +409,19 @@ SIMD_INLINE void block_to_particles(transfer_context *t, int32_t block_index, in
     solid *s = t->state;
     const solid_block *b = &s->blocks[block_index];
     solid_worker *own = &s->workers[worker];
-    bool wide = kernel == KERNEL_CUBIC || (damage && laplacian == KERNEL_CUBIC);
+    bool wide = kernels_are_wide(kernel, laplacian, damage);
     const real offsets[4] = {0, 1, 2, 3};
     node_row node_offset = row_spread(offsets);
     exchange_window(b, own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, false);
     if (s->old_grid) exchange_window(b, own->old_window, s->old_grid, NODE, BLOCK_NODES * NODE, wide, false);
     if (damage) exchange_window(b, own->damage_window, s->damage_grid, 1, BLOCK_NODES * DAMAGE_NODE, wide, false);
+    if (damage && s->implicit_on) implicit_load_window(s, b, own->implicit_window);
     for (int32_t i = b->first_tile; i < b->first_tile + b->tile_count; i++) {
         tile_work w = {.state = s, .tile = &s->tiles[i], .scratch = &own->tile, .result = &s->tile_results[i], .dt = t->dt};
         memset(w.result, 0, sizeof *w.result);
-        if (damage && s->material_mask[w.tile->material] >> EFFECT_damage & 1)
+        if (damage && s->material_implicit[w.tile->material])
+            implicit_gather(&w, own->implicit_window);
+        else if (damage && s->material_mask[w.tile->material] >> EFFECT_damage & 1)
             gather_laplacian(&w, laplacian, laplacian == KERNEL_QUADRATIC ? 3 : 4, own->damage_window);
         gather_weights(&w, kernel);
         if (s->old_grid) {

@@ -1,5 +1,6 @@
-/* Checkpoints: any records, sealed. The first 512 bytes (HDF5's user block) carry the size and hash of all that follows, so
- * that a damaged file is known before HDF5 parses it; an attribute carries the hash of the arrays themselves. */
+/* Checkpoints: any records, sealed. The first 512 bytes (HDF5's user block) carry the size and hash of all that
+ * follows, so that a damaged file is known before HDF5 parses it; an attribute carries the hash of the arrays
+ * themselves. */
 #include "store/frames.h"
 
 #include "store/files.h"
@@ -66,7 +67,8 @@ static status damaged(report *r, const char *path, const char *expected, const c
 }
 
 /* Reads an open file to its end: the seal, and the hash and size of what follows. */
-static status hash_file(int fd, const char *path, char seal[SEAL], uint64_t *hash, uint64_t *bytes, bool *whole, report *r) {
+static status hash_file(int fd, const char *path, char seal[SEAL], uint64_t *hash, uint64_t *bytes, bool *whole,
+                        report *r) {
     XXH3_state_t *state = XXH3_createState();
     if (!state) return report_set(r, STATUS_SYSTEM, "%s: out of memory for its hash", path);
     XXH3_64bits_reset(state);
@@ -127,7 +129,8 @@ static size_t image_bytes(const record_list *records) {
     return bytes;
 }
 
-static status write_contents(hid_t file, const char *path, const frame_header *header, const record_list *records, report *r) {
+static status write_contents(hid_t file, const char *path, const frame_header *header, const record_list *records,
+                             report *r) {
     char hash[HASH_TEXT];
     content_hash(records, hash);
     status s = hdf_write_header(file, path, "sunder checkpoint 1", header, r);
@@ -172,7 +175,8 @@ static status read_contents(hid_t file, const char *path, record_list *records, 
     return damaged(r, path, told, hash);
 }
 
-/* *whole tells a damaged file, which an older one may stand in for, from trouble (memory, permissions) that it would share. */
+/* *whole tells a damaged file, which an older one may stand in for, from trouble (memory, permissions) that it would
+ * share. */
 static status read_path(const char *path, record_list *records, bool *whole, report *r) {
     hid_t file;
     status s = check_seal(path, whole, r);
@@ -193,8 +197,8 @@ static status missing(const char *path, const char *folder, int64_t frame, repor
     for (size_t i = 0; i < numbers.count; i++)
         if (i == 0 || numbers.items[i] <= frame) snprintf(nearest, sizeof nearest, "%" PRId64, numbers.items[i]);
     if (numbers.count > 0)
-        snprintf(expected, sizeof expected, "one of the %zu checkpoints of frames %" PRId64 " to %" PRId64, numbers.count,
-                 numbers.items[0], numbers.items[numbers.count - 1]);
+        snprintf(expected, sizeof expected, "one of the %zu checkpoints of frames %" PRId64 " to %" PRId64,
+                 numbers.count, numbers.items[0], numbers.items[numbers.count - 1]);
     file_numbers_free(&numbers);
     return report_input(r, path, 0, NULL, expected, found, nearest[0] ? nearest : NULL);
 }
@@ -227,8 +231,8 @@ status checkpoint_read_last(const char *folder, record_list *records, int64_t *f
     }
     if (!s && warning->code) {
         size_t used = strlen(warning->message);
-        snprintf(warning->message + used, sizeof warning->message - used, "; the one of frame %" PRId64 " is used instead",
-                 *frame);
+        snprintf(warning->message + used, sizeof warning->message - used,
+                 "; the one of frame %" PRId64 " is used instead", *frame);
     }
     if (s) report_clear(warning);
     file_numbers_free(&numbers);

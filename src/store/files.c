@@ -101,7 +101,8 @@ static int write_all(int fd, const char *data, size_t size) {
     return 0;
 }
 
-/* The temporary's name: hidden, in the same folder, with the writer's pid so that folder_sweep can tell the dead ones. */
+/* The temporary's name: hidden, in the same folder, with the writer's pid so that folder_sweep can tell the dead ones.
+ */
 static status temporary_name(const char *path, char temporary[FILE_PATH], report *r) {
     const char *slash = strrchr(path, '/');
     const char *name = slash ? slash + 1 : path;
@@ -199,7 +200,8 @@ static int ascending(const void *a, const void *b) {
 status file_numbers_read(const char *folder, const char *prefix, const char *suffix, file_numbers *numbers, report *r) {
     *numbers = (file_numbers){0};
     DIR *directory = opendir(folder);
-    if (!directory && (errno == ENOENT || errno == ENOTDIR)) return STATUS_OK; /* who writes there will say what is wrong */
+    if (!directory && (errno == ENOENT || errno == ENOTDIR))
+        return STATUS_OK; /* who writes there will say what is wrong */
     if (!directory) return file_fail(r, folder, "list the folder", errno);
     status s = STATUS_OK;
     errno = 0; /* the only way to tell readdir's errors from its end */
@@ -240,7 +242,8 @@ status file_read_whole(const char *path, char **text, size_t *size, report *r) {
     status s = STATUS_OK;
     if (fstat(fd, &info) != 0) s = file_fail(r, path, "ask for its size", errno);
     char *block = s ? NULL : memory_allocate((size_t)info.st_size + 1);
-    if (!s && !block) s = report_set(r, STATUS_SYSTEM, "%s: out of memory for its %lld bytes", path, (long long)info.st_size);
+    if (!s && !block)
+        s = report_set(r, STATUS_SYSTEM, "%s: out of memory for its %lld bytes", path, (long long)info.st_size);
     if (!s) s = read_all(fd, path, block, (size_t)info.st_size, r);
     close(fd);
     if (s) {

@@ -38,7 +38,8 @@ status file_write_whole(const char *path, const void *data, size_t size, report 
 /* Removes temporary files in `folder` whose writer is no longer alive. */
 void folder_sweep(const char *folder);
 
-/* Numbers of the files PREFIX%06dSUFFIX in `folder`, ascending; a missing folder holds none. Free with file_numbers_free. */
+/* Numbers of the files PREFIX%06dSUFFIX in `folder`, ascending; a missing folder holds none. Free with
+ * file_numbers_free. */
 typedef struct file_numbers {
     int64_t *items; /* [count] */
     size_t count, capacity;

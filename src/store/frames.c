@@ -48,7 +48,8 @@ static status refuse_contents(const char *folder, report *r) {
     char found[128];
     snprintf(found, sizeof found, "a run's %zu frames and %zu checkpoints", frames, checkpoints);
     report_input(r, folder, 0, NULL, "a folder without a run in it", found, NULL);
-    snprintf(r->message, sizeof r->message, "frames are never overwritten by another run: resume that run or choose another folder");
+    snprintf(r->message, sizeof r->message,
+             "frames are never overwritten by another run: resume that run or choose another folder");
     return STATUS_INPUT;
 }
 
@@ -139,7 +140,8 @@ static status view_folder(char path[FILE_PATH], const char *folder, const char *
 }
 
 /* Sets after the first get a view in a folder of their own: one root holds one point set. */
-static status write_views(const char *folder, const frame_header *header, const record_list *records, int deflate, report *r) {
+static status write_views(const char *folder, const frame_header *header, const record_list *records, int deflate,
+                          report *r) {
     const char *first = first_set(records);
     status s = STATUS_OK;
     for (int i = 0; i < VTKHDF_SETS && !s; i++) {
@@ -223,7 +225,8 @@ int64_t frame_last(const char *folder) {
 
 /* ---- cutting back ------------------------------------------------------------------------------------------------ */
 
-/* Removes the numbered files above `limit`, the highest first: whenever it is stopped, what is left is without a gap. */
+/* Removes the numbered files above `limit`, the highest first: whenever it is stopped, what is left is without a gap.
+ */
 static status remove_above(const char *folder, const char *prefix, int64_t limit, report *r) {
     file_numbers numbers;
     status s = file_numbers_read(folder, prefix, ".hdf", &numbers, r);

@@ -17,30 +17,36 @@ typedef struct frame_header {
     const char *run_id, *units, *scene_title, *scene_hash, *version, *precision, *simd;
 } frame_header;
 
-/* Creates the folder with frames/ and scene/. A folder that already holds a run's frames is an input error that says so, unless `resume`. */
+/* Creates the folder with frames/ and scene/, and removes what killed writers left half-written. A folder that already
+ * holds a run's frames or checkpoints is an input error that says so, unless `resume`. */
 status run_folder_create(const char *folder, bool resume, report *r);
 
 /* Writes frames/%06d.hdf from records named "solid/position" [n,3] … "sheet/…", with attributes and a VTKHDF 1.0
- * UnstructuredGrid view by soft links (a vertex cell per particle), then refreshes frames/frames.hdf.series (a JSON file: ParaView's
- * file series with times), itself written beside and renamed. `deflate` 0–9 (with shuffle). */
+ * UnstructuredGrid view by soft links (a vertex cell per particle), then refreshes frames/frames.hdf.series (a JSON
+ * file: ParaView's file series with times), itself written beside and renamed. `deflate` 0–9 (with shuffle). When there
+ * is a solid and a sheet, the sheet's view is frames/sheet/%06d.hdf, by external links. A frame of another run_id is
+ * never overwritten: an input error. */
 status frame_write(const char *folder, const frame_header *header, const record_list *records, int deflate, report *r);
 
-/* Reads a frame's records back (names as written, without the VTK view), and its step and time. The caller clears the list. */
+/* Reads a frame's records back (names as written, without the VTK view), and its step and time. What was in
+ * the list is overwritten, not freed; the caller clears it. A frame that is not there is an input error that names
+ * those that are. */
 status frame_read(const char *folder, int64_t frame, record_list *records, double *time, int64_t *step, report *r);
 
 /* Number of the last whole frame, or −1. */
 int64_t frame_last(const char *folder);
 
 /* checkpoint-%06d.hdf: any records; every byte comes back as it was. A content hash (xxHash) is stored and checked on
- * reading: a damaged file is an error, and checkpoint_read_last falls back to the one before it, saying so in *warning. */
+ * reading: a damaged file is an error, and checkpoint_read_last falls back to the one before it, saying so in *warning.
+ */
 status checkpoint_write(const char *folder, const frame_header *header, const record_list *records, report *r);
 status checkpoint_read(const char *folder, int64_t frame, record_list *records, report *r);
 status checkpoint_read_last(const char *folder, record_list *records, int64_t *frame, report *warning, report *r);
 
-/* Removes all but the `keep` newest checkpoints. */
+/* Removes all but the `keep` newest checkpoints; below 1 it keeps all. */
 status checkpoint_thin(const char *folder, int keep, report *r);
 
-/* Removes frames numbered above `frame` (a resumed run rewrites them). */
+/* Removes frames (with their views) and checkpoints numbered above `frame`: a resumed run rewrites them. */
 status frame_truncate(const char *folder, int64_t frame, report *r);
 
 /* Writes text beside, syncs, renames, syncs the directory. */

@@ -7,8 +7,8 @@
 #include <string.h>
 
 enum {
-    IMAGE_STEP = 1 << 18,     /* bytes by which HDF5 asks for more room */
-    COMPACT_LINKS = 256,      /* more than RECORD_LIMIT: links stay in the group's header, without heap and B-tree */
+    IMAGE_STEP = 1 << 18, /* bytes by which HDF5 asks for more room */
+    COMPACT_LINKS = 256,  /* more than RECORD_LIMIT: links stay in the group's header, without heap and B-tree */
     COMPACT_ATTRIBUTES = 64,
 };
 
@@ -28,7 +28,8 @@ static herr_t keep_innermost(unsigned n, const H5E_error2_t *error, void *contex
 status hdf_fail(report *r, const char *path, const char *doing) {
     H5E_error2_t error = {0};
     H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_innermost, &error);
-    report_set(r, STATUS_SYSTEM, "cannot %s: %s (HDF5, %s)", doing, error.desc && error.desc[0] ? error.desc : "no reason given",
+    report_set(r, STATUS_SYSTEM, "cannot %s: %s (HDF5, %s)", doing,
+               error.desc && error.desc[0] ? error.desc : "no reason given",
                error.func_name ? error.func_name : "unknown");
     report_file(r, path);
     H5Eclear2(H5E_DEFAULT);
@@ -37,8 +38,8 @@ status hdf_fail(report *r, const char *path, const char *doing) {
 
 /* ---- images ------------------------------------------------------------------------------------------------------ */
 
-/* The core driver's memory is ours: reserved in one piece before HDF5 starts, so that memory runs out (if it must) before
- * there is anything to lose, and kept when HDF5 gives it back, so that the finished file needs no copy. */
+/* The core driver's memory is ours: reserved in one piece before HDF5 starts, so that memory runs out (if it must)
+ * before there is anything to lose, and kept when HDF5 gives it back, so that the finished file needs no copy. */
 static void *image_resize(void *block, size_t size, H5FD_file_image_op_t operation, void *context) {
     (void)block, (void)operation;
     hdf_image *image = context;
@@ -75,7 +76,7 @@ static herr_t context_free(void *context) {
 }
 
 static hid_t image_access(hdf_image *image) {
-    H5FD_file_image_callbacks_t callbacks = {image_allocate, image_copy, image_resize, image_keep,
+    H5FD_file_image_callbacks_t callbacks = {image_allocate, image_copy,   image_resize, image_keep,
                                              context_copy,   context_free, image};
     hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     if (access < 0) return access;

@@ -19,11 +19,12 @@ status hdf_fail(report *r, const char *path, const char *doing);
 typedef struct hdf_image {
     const char *path;
     hid_t file;
-    char *block;     /* [size] once closed: the file's bytes */
+    char *block; /* [size] once closed: the file's bytes */
     size_t capacity, size;
 } hdf_image;
 
-/* Starts an image with room for `reserve` bytes (it grows past it) and `user_block` bytes (0, or 512·2^k) before HDF5's own. */
+/* Starts an image with room for `reserve` bytes (it grows past it) and `user_block` bytes (0, or 512·2^k) before HDF5's
+ * own. */
 status hdf_image_create(hdf_image *image, const char *path, size_t reserve, size_t user_block, report *r);
 
 /* Completes block and size. Pair hdf_image_create with hdf_image_free on every way out; it closes what is open. */

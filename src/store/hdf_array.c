@@ -38,7 +38,8 @@ static bool record_type_of(hid_t type, record_type *found) {
 
 /* ---- writing ----------------------------------------------------------------------------------------------------- */
 
-/* A creation list: chunked with shuffle and deflate (whose streams carry a checksum) when `rows` says so, else contiguous. */
+/* A creation list: chunked with shuffle and deflate (whose streams carry a checksum) when `rows` says so, else
+ * contiguous. */
 static hid_t creation_list(const hdf_array *array, int rank, int64_t rows, int deflate) {
     hid_t list = H5Pcreate(H5P_DATASET_CREATE);
     hsize_t chunk[2] = {(hsize_t)rows, (hsize_t)array->components};

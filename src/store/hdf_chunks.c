@@ -5,7 +5,8 @@
 #include <string.h>
 #include <zlib.h>
 
-_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "chunks are written in memory's byte order, which the file says is little");
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
+               "chunks are written in memory's byte order, which the file says is little");
 
 enum {
     WORTHWHILE = 1 << 14, /* bytes: below, a chunk index costs what compression saves */
@@ -17,11 +18,11 @@ enum {
 typedef struct packer {
     char *block;
     size_t block_bytes, chunk_bytes;
-    const char *raw;      /* [chunk_bytes] as the caller has it, or a padded copy of the last rows */
-    char *padded;         /* [chunk_bytes] */
-    unsigned char *mixed; /* [chunk_bytes] shuffled */
+    const char *raw;       /* [chunk_bytes] as the caller has it, or a padded copy of the last rows */
+    char *padded;          /* [chunk_bytes] */
+    unsigned char *mixed;  /* [chunk_bytes] shuffled */
     unsigned char *packed; /* [chunk_bytes]: what does not fit is not worth packing */
-    size_t element;       /* bytes of one element */
+    size_t element;        /* bytes of one element */
     z_stream stream;
 } packer;
 

@@ -121,8 +121,8 @@ status ledger_run_statement(ledger *l, sqlite3_stmt *statement, const char *doin
 
 /* ---- transactions ------------------------------------------------------------------------------------------------ */
 
-/* IMMEDIATE: a deferred transaction that reads before it writes fails at once when another writer came between, and no busy
- * timeout helps it. */
+/* IMMEDIATE: a deferred transaction that reads before it writes fails at once when another writer came between, and no
+ * busy timeout helps it. */
 status ledger_write_begin(ledger *l, const char *doing, report *r) {
     return l->batch > 0 ? STATUS_OK : ledger_execute(l, "BEGIN IMMEDIATE", doing, r);
 }
@@ -205,24 +205,26 @@ static status migrate(ledger *l, report *r) {
     return ledger_write_end(l, s, "commit its schema", r);
 }
 
-/* SQLite answers "busy" at once, without its timeout, when two processes turn the write-ahead log on together. On a file system
- * that cannot have one, the rollback journal stays, and everything works but slower. */
+/* SQLite answers "busy" at once, without its timeout, when two processes turn the write-ahead log on together. On a
+ * file system that cannot have one, the rollback journal stays, and everything works but slower. */
 static status use_write_ahead_log(ledger *l, report *r) {
     const struct timespec pause = {.tv_nsec = 10 * 1000 * 1000};
     for (int tries = 0;; tries++) {
         int code = sqlite3_exec(l->database, "PRAGMA journal_mode = WAL", NULL, NULL, NULL);
         if (code == SQLITE_OK) return STATUS_OK;
-        if (code != SQLITE_BUSY || tries == BUSY_MILLISECONDS / 10) return ledger_fail(l, "turn its write-ahead log on", r);
+        if (code != SQLITE_BUSY || tries == BUSY_MILLISECONDS / 10)
+            return ledger_fail(l, "turn its write-ahead log on", r);
         nanosleep(&pause, NULL);
     }
 }
 
-/* No automatic checkpoints: before version 3.51.3 two connections that checkpoint at once could, rarely, lose a reset log.
- * The last connection to close checkpoints alone, with the file locked. */
+/* No automatic checkpoints: before version 3.51.3 two connections that checkpoint at once could, rarely, lose a reset
+ * log. The last connection to close checkpoints alone, with the file locked. */
 static status configure(ledger *l, report *r) {
     status s = use_write_ahead_log(l, r);
-    return s ? s : ledger_execute(l, "PRAGMA foreign_keys = ON; PRAGMA wal_autocheckpoint = 0; PRAGMA synchronous = FULL",
-                                  "configure it", r);
+    return s ? s
+             : ledger_execute(l, "PRAGMA foreign_keys = ON; PRAGMA wal_autocheckpoint = 0; PRAGMA synchronous = FULL",
+                              "configure it", r);
 }
 
 /* What SQLite says too late or too vaguely. */
@@ -246,12 +248,14 @@ static status cannot_open(ledger *l, report *r) {
     char *slash = strrchr(folder, '/');
     if (slash) slash[slash == folder] = '\0';
     const char *probe = access(l->path, F_OK) == 0 ? l->path : slash ? folder : ".";
-    return access(probe, W_OK) != 0 ? file_fail(r, l->path, "open the ledger", errno) : ledger_fail(l, "open the ledger", r);
+    return access(probe, W_OK) != 0 ? file_fail(r, l->path, "open the ledger", errno)
+                                    : ledger_fail(l, "open the ledger", r);
 }
 
 static status open_database(ledger *l, report *r) {
     int64_t version;
-    if (sqlite3_open_v2(l->path, &l->database, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_FULLMUTEX, NULL))
+    if (sqlite3_open_v2(l->path, &l->database, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_FULLMUTEX,
+                        NULL))
         return cannot_open(l, r);
     sqlite3_busy_timeout(l->database, BUSY_MILLISECONDS);
     status s = check_identity(l, &version, r);
@@ -346,7 +350,7 @@ static status find_runs(ledger *l, const char *sql, const char *name, int *count
 status ledger_resolve(ledger *l, const char *name, char id[LEDGER_ID], char *output, size_t size, report *r) {
     static const char *const ways[] = {
         "SELECT id, output FROM runs WHERE id = ?1",
-        "SELECT id, output FROM runs WHERE ?1 = 'last' AND run = (SELECT run FROM runs ORDER BY started DESC, run DESC LIMIT 1)",
+        "SELECT id, output FROM runs WHERE ?1 = 'last' ORDER BY started DESC, run DESC LIMIT 1",
         "SELECT id, output FROM runs WHERE ?1 <> '' AND substr(id, 1, length(?1)) = ?1 ORDER BY started DESC, run DESC",
         "SELECT id, output FROM runs WHERE ?1 <> '' AND substr(id, -length(?1)) = ?1 ORDER BY started DESC, run DESC",
     };

@@ -1,7 +1,7 @@
 /* The run ledger: one SQLite database that remembers every run, its parameters and its measures per frame.
  *
- * WAL journal, busy timeout, BEGIN IMMEDIATE, one connection per process writes. Schema and migrations are the .sql files of db/schema,
- * compiled into the program. Run ids are short, sortable and unique: "20261122-061502-3f9a". */
+ * WAL journal, busy timeout, BEGIN IMMEDIATE, one connection per process writes. Schema and migrations are the .sql
+ * files of db/schema, compiled into the program. Run ids are short, sortable and unique: "20261122-061502-3f9a". */
 #ifndef SUNDER_STORE_LEDGER_H
 #define SUNDER_STORE_LEDGER_H
 
@@ -15,8 +15,8 @@ typedef struct ledger ledger;
 
 enum { LEDGER_ID = 40 };
 
-/* The ledger's path when --db is not given: $SUNDER_DB, else $XDG_DATA_HOME/sunder/ledger.db, else ~/.local/share/…; the folder
- * is created by ledger_open. */
+/* The ledger's path when --db is not given: $SUNDER_DB, else $XDG_DATA_HOME/sunder/ledger.db, else ~/.local/share/…;
+ * the folder is created by ledger_open. */
 status ledger_default_path(char *path, size_t size, report *r);
 
 /* The folder under which runs without --out are kept: the ledger's default folder + "/runs". */
@@ -32,19 +32,20 @@ typedef struct ledger_run {
     const char *command;                               /* the command line, for people */
     const char *output;                                /* the run's folder */
     const char *precision, *simd, *version;
-    const char *effects;                               /* names joined by commas */
+    const char *effects; /* names joined by commas */
     int threads;
     int64_t particles, frames_wanted, seed;
-    const char *parent;                                /* run id and frame that it was resumed or branched from, or NULL */
+    const char *parent; /* run id and frame that it was resumed or branched from, or NULL */
     int64_t parent_frame;
 } ledger_run;
 
-/* Writes the run as 'running', with this process's pid, host and start time (dead runs are recognised by them), and gives its
- * id. */
+/* Writes the run as 'running', with this process's pid, host and start time (dead runs are recognised by them), and
+ * gives its id. */
 status ledger_begin(ledger *l, const ledger_run *run, char id[LEDGER_ID], report *r);
 
-/* Calls between the two become one transaction (one sync of the disk instead of one each): `outcome` is STATUS_OK to keep what was
- * written, an error to drop it all. Batches nest. ledger_batch_end returns `outcome`, or the commit's own trouble. */
+/* Calls between the two become one transaction (one sync of the disk instead of one each): `outcome` is STATUS_OK to
+ * keep what was written, an error to drop it all. Batches nest. ledger_batch_end returns `outcome`, or the commit's own
+ * trouble. */
 status ledger_batch_begin(ledger *l, report *r);
 status ledger_batch_end(ledger *l, status outcome, report *r);
 
@@ -60,31 +61,36 @@ typedef struct ledger_value {
     double value; /* NaN is stored as NULL */
 } ledger_value;
 
-/* Measures of one frame, in one transaction. Rows of this frame and of later ones are replaced: a resumed run goes on from here. */
+/* Measures of one frame, in one transaction. Rows of this frame and of later ones are replaced: a resumed run goes on
+ * from here. */
 status ledger_frame(ledger *l, const char *id, int64_t frame, double time, int64_t steps, double wall_seconds,
                     const ledger_value *values, int count, report *r);
 
 /* An event ("first_crack", "warning", "knob", "checkpoint" …) with free text. */
 status ledger_event(ledger *l, const char *id, int64_t frame, const char *kind, const char *text, report *r);
 
-/* Ends a run: status is "done", "failed", "interrupted" ("dead" is for runs that could not say so themselves); summary_json is the `run --json` object. */
-status ledger_finish(ledger *l, const char *id, const char *run_status, int64_t frames, int64_t steps, double wall_seconds,
-                     const char *message, const char *summary_json, report *r);
+/* Ends a run: status is "done", "failed", "interrupted" ("dead" is for runs that could not say so themselves);
+ * summary_json is the `run --json` object. */
+status ledger_finish(ledger *l, const char *id, const char *run_status, int64_t frames, int64_t steps,
+                     double wall_seconds, const char *message, const char *summary_json, report *r);
 
-/* Marks a run that is being resumed as 'running' again, under this process. A run that another live process of this host is
- * writing is an input error; of another host it cannot be known, and the caller is believed. */
+/* Marks a run that is being resumed as 'running' again, under this process. A run that another live process of this
+ * host is writing is an input error; of another host it cannot be known, and the caller is believed. */
 status ledger_reopen(ledger *l, const char *id, report *r);
 
-/* Expands a full id, a unique prefix, a unique suffix, or "last" into an id and its output folder. STATUS_INPUT with the nearest id. */
+/* Expands a full id, a unique prefix, a unique suffix, or "last" into an id and its output folder. STATUS_INPUT with
+ * the nearest id. */
 status ledger_resolve(ledger *l, const char *name, char id[LEDGER_ID], char *output, size_t size, report *r);
 
-/* Tags are short words without commas; `on` adds, else removes (a tag that is not there is an input error with the nearest). */
+/* Tags are short words without commas; `on` adds, else removes (a tag that is not there is an input error with the
+ * nearest). */
 status ledger_tag(ledger *l, const char *id, const char *tag, bool on, report *r);
 
 /* Adds a remark in free text. */
 status ledger_note(ledger *l, const char *id, const char *text, report *r);
 
-/* Forgets a run and all its rows; its folder is the caller's business. A run that is still being written is an input error. */
+/* Forgets a run and all its rows; its folder is the caller's business. A run that is still being written is an input
+ * error. */
 status ledger_remove(ledger *l, const char *id, report *r);
 
 /* One value of a row that a query gave. */
@@ -97,22 +103,22 @@ typedef struct ledger_cell {
 /* Called for each row with cells [count]; anything but STATUS_OK stops the query and is returned. */
 typedef status (*ledger_row)(void *context, const ledger_cell *cells, int count, report *r);
 
-/* Runs one SQL query that only reads. arguments has shape [argument_count], each "NAME=VALUE" for the parameter :NAME of the SQL;
- * those not given are NULL, an unknown one is an input error with the nearest. */
+/* Runs one SQL query that only reads. arguments has shape [argument_count], each "NAME=VALUE" for the parameter :NAME
+ * of the SQL; those not given are NULL, an unknown one is an input error with the nearest. */
 status ledger_each_row(ledger *l, const char *sql, const char *const *arguments, int argument_count, ledger_row row,
                        void *context, report *r);
 
 /* The same, printed: a table for people, or {"columns": […], "rows": [[…], …]}. */
-status ledger_print_sql(ledger *l, FILE *out, bool json, const char *sql, const char *const *arguments, int argument_count,
-                        report *r);
+status ledger_print_sql(ledger *l, FILE *out, bool json, const char *sql, const char *const *arguments,
+                        int argument_count, report *r);
 
-/* Ready-made queries (db/queries): the SQL by name (STATUS_INPUT with the nearest), and their names in order, NULL at the end. Each
- * SQL text opens with comments that say what it answers and what its parameters are. */
+/* Ready-made queries (db/queries): the SQL by name (STATUS_INPUT with the nearest), and their names in order, NULL at
+ * the end. Each SQL text opens with comments that say what it answers and what its parameters are. */
 status ledger_query(const char *name, const char **sql, report *r);
 const char *ledger_query_name(int index);
 
-/* Runs whose process is gone are shown as "dead" (host and pid, with the process start time, tell). `json` prints one object on
- * `out`. Filters: `where` is NULL or an SQL condition over the runs view. */
+/* Runs whose process is gone are shown as "dead" (host and pid, with the process start time, tell). `json` prints one
+ * object on `out`. Filters: `where` is NULL or an SQL condition over the runs view. */
 status ledger_print_list(ledger *l, FILE *out, bool json, const char *where, int limit, report *r);
 status ledger_print_show(ledger *l, FILE *out, bool json, const char *id, report *r);
 /* Just what differs: columns of the run, parameters, final measures; nothing that is equal, and not times and ids. */

@@ -3,15 +3,18 @@
 #include <string.h>
 #include <time.h>
 
-const char detail_parameters_sql[] = "SELECT name, number, text, unit, from_set FROM run_parameters WHERE run = ?1 ORDER BY name";
+const char detail_parameters_sql[] =
+    "SELECT name, number, text, unit, from_set FROM run_parameters WHERE run = ?1 ORDER BY name";
 const char detail_measures_sql[] = "SELECT name, value FROM final_measures WHERE run = ?1 ORDER BY name";
 const char detail_events_sql[] = "SELECT frame, happened, kind, text FROM events WHERE run = ?1 ORDER BY event";
 const char detail_notes_sql[] = "SELECT written, text FROM notes WHERE run = ?1 ORDER BY note";
 
 status detail_select(ledger *l, int64_t run, sqlite3_stmt **statement, report *r) {
     static const char sql[] =
-        "SELECT v.id AS run_id, v.status, v.scene, v.title, v.variant, v.scene_hash, r.started, r.ended, v.wall_seconds AS wall_s, "
-        "v.particles, v.frames, v.frames_wanted, v.steps, v.time, v.threads, v.precision, v.simd, v.version, v.effects, v.seed, "
+        "SELECT v.id AS run_id, v.status, v.scene, v.title, v.variant, v.scene_hash, r.started, r.ended, "
+        "v.wall_seconds AS wall_s, "
+        "v.particles, v.frames, v.frames_wanted, v.steps, v.time, v.threads, v.precision, v.simd, v.version, "
+        "v.effects, v.seed, "
         "v.message, v.parent, v.parent_frame, v.command, v.output AS out, r.host, r.pid, v.tags, v.summary "
         "FROM runs_view AS v JOIN runs AS r ON r.run = v.run WHERE r.run = ?1";
     bool row;
@@ -185,8 +188,8 @@ static status json_history(ledger *l, json_writer *w, int64_t run, report *r) {
 }
 
 /* "name": { or [ … rows … } or ]. */
-static status json_rows(ledger *l, json_writer *w, const char *name, bool object, const char *sql, int64_t run, detail_row take,
-                        report *r) {
+static status json_rows(ledger *l, json_writer *w, const char *name, bool object, const char *sql, int64_t run,
+                        detail_row take, report *r) {
     json_key(w, name);
     if (object)
         json_object(w);
@@ -224,7 +227,8 @@ status detail_json(ledger *l, json_writer *w, int64_t run, bool whole, report *r
         s = json_rows(l, w, "parameters", true, detail_parameters_sql, run, json_parameter, r);
     }
     if (!s) s = json_rows(l, w, "measures", true, detail_measures_sql, run, json_measure, r);
-    if (!s && whole) s = json_rows(l, w, "parameter_details", false, detail_parameters_sql, run, json_parameter_detail, r);
+    if (!s && whole)
+        s = json_rows(l, w, "parameter_details", false, detail_parameters_sql, run, json_parameter_detail, r);
     if (!s && whole) s = json_rows(l, w, "events", false, detail_events_sql, run, json_event, r);
     if (!s && whole) s = json_rows(l, w, "notes", false, detail_notes_sql, run, json_note, r);
     if (!s && whole) {

@@ -55,8 +55,8 @@ status detail_each_pair(ledger *l, const char *sql, const int64_t runs[2], detai
 /* A value of a statement's row: text, exact number or null. */
 void detail_json_value(json_writer *w, sqlite3_stmt *statement, int column);
 
-/* The run as one JSON object with its parameters and final measures; `whole` adds how parameters were given, the history of
- * measures, events and notes. */
+/* The run as one JSON object with its parameters and final measures; `whole` adds how parameters were given, the
+ * history of measures, events and notes. */
 status detail_json(ledger *l, json_writer *w, int64_t run, bool whole, report *r);
 
 /* Ends a JSON text, prints it on a line of its own and frees it. */

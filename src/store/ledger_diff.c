@@ -7,30 +7,34 @@
 #include <math.h>
 #include <string.h>
 
-/* All queries give: name, value of a, value of b, unit; only rows whose values differ. What one run lacks is NULL, and `IS NOT`
- * takes two of those for equal. */
+/* All queries give: name, value of a, value of b, unit; only rows whose values differ. What one run lacks is NULL, and
+ * `IS NOT` takes two of those for equal. */
 static const char parameters_sql[] =
+    "WITH a AS MATERIALIZED (SELECT * FROM run_parameters WHERE run = ?1), "
+    "b AS MATERIALIZED (SELECT * FROM run_parameters WHERE run = ?2) "
     "SELECT name, coalesce(a.text, a.number), coalesce(b.text, b.number), coalesce(b.unit, a.unit) "
-    "FROM (SELECT * FROM run_parameters WHERE run = ?1) AS a "
-    "FULL JOIN (SELECT * FROM run_parameters WHERE run = ?2) AS b USING (name) "
+    "FROM (SELECT name FROM a UNION SELECT name FROM b) LEFT JOIN a USING (name) LEFT JOIN b USING (name) "
     "WHERE a.number IS NOT b.number OR a.text IS NOT b.text ORDER BY name";
 
 static const char measures_sql[] =
-    "SELECT name, a.value, b.value, '' FROM (SELECT * FROM final_measures WHERE run = ?1) AS a "
-    "FULL JOIN (SELECT * FROM final_measures WHERE run = ?2) AS b USING (name) "
+    "WITH a AS MATERIALIZED (SELECT name, value FROM final_measures WHERE run = ?1), "
+    "b AS MATERIALIZED (SELECT name, value FROM final_measures WHERE run = ?2) "
+    "SELECT name, a.value, b.value, '' "
+    "FROM (SELECT name FROM a UNION SELECT name FROM b) LEFT JOIN a USING (name) LEFT JOIN b USING (name) "
     "WHERE a.value IS NOT b.value ORDER BY name";
 
 /* Columns that say how a run was made and how it ended; not when, where or by which name. */
 #define DIFFERENCE(column)                                                                                             \
-    "SELECT '" column "', a." column ", b." column ", '' FROM runs_view AS a, runs_view AS b "                          \
+    "SELECT '" column "', a." column ", b." column ", '' FROM runs_view AS a, runs_view AS b "                         \
     "WHERE a.run = ?1 AND b.run = ?2 AND a." column " IS NOT b." column
 #define AND_ALSO " UNION ALL "
 
-static const char settings_sql[] = DIFFERENCE("title") AND_ALSO DIFFERENCE("variant") AND_ALSO DIFFERENCE("scene")
-    AND_ALSO DIFFERENCE("scene_hash") AND_ALSO DIFFERENCE("effects") AND_ALSO DIFFERENCE("particles")
-    AND_ALSO DIFFERENCE("seed") AND_ALSO DIFFERENCE("precision") AND_ALSO DIFFERENCE("simd") AND_ALSO DIFFERENCE("threads")
-    AND_ALSO DIFFERENCE("version") AND_ALSO DIFFERENCE("frames_wanted") AND_ALSO DIFFERENCE("status")
-    AND_ALSO DIFFERENCE("message") AND_ALSO DIFFERENCE("frames") AND_ALSO DIFFERENCE("steps");
+static const char settings_sql[] =
+    DIFFERENCE("title") AND_ALSO DIFFERENCE("variant") AND_ALSO DIFFERENCE("scene") AND_ALSO DIFFERENCE("scene_hash")
+        AND_ALSO DIFFERENCE("effects") AND_ALSO DIFFERENCE("particles") AND_ALSO DIFFERENCE("seed")
+            AND_ALSO DIFFERENCE("precision") AND_ALSO DIFFERENCE("simd") AND_ALSO DIFFERENCE("threads")
+                AND_ALSO DIFFERENCE("version") AND_ALSO DIFFERENCE("frames_wanted") AND_ALSO DIFFERENCE("status")
+                    AND_ALSO DIFFERENCE("message") AND_ALSO DIFFERENCE("frames") AND_ALSO DIFFERENCE("steps");
 
 typedef struct part {
     const char *title, *key, *sql;
@@ -86,8 +90,10 @@ static status add_text(void *context, sqlite3_stmt *row, report *r) {
 }
 
 static status print_text_part(ledger *l, FILE *out, const part *which, const int64_t runs[2], bool *any, report *r) {
-    static const table_column columns[] = {
-        {.title = ""}, {.title = "", .right = true, .least = 8}, {.title = "", .right = true, .least = 8}, {.title = "", .right = true}};
+    static const table_column columns[] = {{.title = ""},
+                                           {.title = "", .right = true, .least = 8},
+                                           {.title = "", .right = true, .least = 8},
+                                           {.title = "", .right = true}};
     table *rows = table_create(columns, 4);
     if (!rows) return report_set(r, STATUS_SYSTEM, "out of memory for a table");
     status s = detail_each_pair(l, which->sql, runs, add_text, rows, r);

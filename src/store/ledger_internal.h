@@ -40,8 +40,8 @@ status ledger_run_statement(ledger *l, sqlite3_stmt *statement, const char *doin
 /* Steps a query: *row tells whether there is one. At the end, and on an error, the statement is reset. */
 status ledger_next(ledger *l, sqlite3_stmt *statement, bool *row, const char *doing, report *r);
 
-/* A write: BEGIN IMMEDIATE … COMMIT, or ROLLBACK when `outcome` is an error. Within a batch both leave the transaction to it.
- * ledger_write_end returns `outcome`, or COMMIT's own trouble. */
+/* A write: BEGIN IMMEDIATE … COMMIT, or ROLLBACK when `outcome` is an error. Within a batch both leave the transaction
+ * to it. ledger_write_end returns `outcome`, or COMMIT's own trouble. */
 status ledger_write_begin(ledger *l, const char *doing, report *r);
 status ledger_write_end(ledger *l, status outcome, const char *doing, report *r);
 

@@ -6,6 +6,7 @@
 #include "store/table.h"
 
 #include <inttypes.h>
+#include <limits.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -60,7 +61,8 @@ static void format_value(sqlite3_stmt *statement, int column, char text[256]) {
     if (sqlite3_column_type(statement, column) == SQLITE_FLOAT)
         snprintf(text, 256, "%.6g", sqlite3_column_double(statement, column));
     else
-        snprintf(text, 256, "%s", sqlite3_column_type(statement, column) == SQLITE_NULL ? "-" : detail_text(statement, column));
+        snprintf(text, 256, "%s",
+                 sqlite3_column_type(statement, column) == SQLITE_NULL ? "-" : detail_text(statement, column));
 }
 
 /* ---- list -------------------------------------------------------------------------------------------------------- */
@@ -91,8 +93,8 @@ static status wrong_condition(ledger *l, const char *where, report *r) {
     return STATUS_INPUT;
 }
 
-/* Prepares "the keys of the runs that fit, the newest first". The condition stands on lines of its own, so that a comment at its
- * end stays one. */
+/* Prepares "the keys of the runs that fit, the newest first". The condition stands on lines of its own, so that a
+ * comment at its end stays one. */
 static status prepare_list(ledger *l, const char *where, int limit, sqlite3_stmt **statement, report *r) {
     char *sql = sqlite3_mprintf("SELECT run FROM runs_view WHERE (\n%s\n) ORDER BY run DESC LIMIT %d",
                                 where && where[0] ? where : "1", limit > 0 ? limit : -1);
@@ -124,8 +126,9 @@ static status list_row(ledger *l, table *t, int64_t run, double now, report *r) 
     format_count(sqlite3_column_int64(row, DETAIL_PARTICLES), particles);
     format_span(now - sqlite3_column_double(row, DETAIL_STARTED), ago);
     format_wall(sqlite3_column_double(row, DETAIL_WALL), wall);
-    const char *const cells[] = {detail_text(row, DETAIL_ID), detail_text(row, DETAIL_STATUS), scene, frames, particles, ago,
-                                 wall, detail_text(row, DETAIL_TAGS)};
+    const char *const cells[] = {
+        detail_text(row, DETAIL_ID),  detail_text(row, DETAIL_STATUS), scene, frames, particles, ago, wall,
+        detail_text(row, DETAIL_TAGS)};
     s = table_add(t, cells, r);
     sqlite3_reset(row);
     return s;
@@ -185,7 +188,8 @@ status ledger_print_list(ledger *l, FILE *out, bool json, const char *where, int
 
 /* ---- show -------------------------------------------------------------------------------------------------------- */
 
-static status add_pair(table *t, const char *name, report *r, const char *format, ...) __attribute__((format(printf, 4, 5)));
+static status add_pair(table *t, const char *name, report *r, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 
 /* A line "name  value"; an empty value makes none. */
 static status add_pair(table *t, const char *name, report *r, const char *format, ...) {
@@ -203,29 +207,35 @@ static status add_settings(table *t, sqlite3_stmt *row, report *r) {
         const char *name;
         int column;
     } lines[] = {
-        {"scene", DETAIL_SCENE},     {"hash", DETAIL_HASH},           {"variant", DETAIL_VARIANT}, {"effects", DETAIL_EFFECTS},
-        {"particles", DETAIL_PARTICLES}, {"precision", DETAIL_PRECISION}, {"simd", DETAIL_SIMD},       {"threads", DETAIL_THREADS},
-        {"seed", DETAIL_SEED},       {"version", DETAIL_VERSION},     {"command", DETAIL_COMMAND}, {"folder", DETAIL_OUTPUT},
+        {"scene", DETAIL_SCENE},     {"hash", DETAIL_HASH},           {"variant", DETAIL_VARIANT},
+        {"effects", DETAIL_EFFECTS}, {"particles", DETAIL_PARTICLES}, {"precision", DETAIL_PRECISION},
+        {"simd", DETAIL_SIMD},       {"threads", DETAIL_THREADS},     {"seed", DETAIL_SEED},
+        {"version", DETAIL_VERSION}, {"command", DETAIL_COMMAND},     {"folder", DETAIL_OUTPUT},
     };
     status s = STATUS_OK;
     for (size_t i = 0; i < sizeof lines / sizeof lines[0] && !s; i++)
         s = add_pair(t, lines[i].name, r, "%s", detail_text(row, lines[i].column));
     if (!s && detail_text(row, DETAIL_PARENT)[0])
-        s = add_pair(t, "parent", r, "%s, frame %s", detail_text(row, DETAIL_PARENT), detail_text(row, DETAIL_PARENT_FRAME));
+        s = add_pair(t, "parent", r, "%s, frame %s", detail_text(row, DETAIL_PARENT),
+                     detail_text(row, DETAIL_PARENT_FRAME));
     return s;
 }
 
 static status add_progress(table *t, sqlite3_stmt *row, report *r) {
     char started[CELL], ended[CELL] = "", wall[CELL], time_text[256];
     format_instant(sqlite3_column_double(row, DETAIL_STARTED), started);
-    if (sqlite3_column_type(row, DETAIL_ENDED) != SQLITE_NULL) format_instant(sqlite3_column_double(row, DETAIL_ENDED), ended);
+    if (sqlite3_column_type(row, DETAIL_ENDED) != SQLITE_NULL)
+        format_instant(sqlite3_column_double(row, DETAIL_ENDED), ended);
     format_wall(sqlite3_column_double(row, DETAIL_WALL), wall);
     format_value(row, DETAIL_TIME, time_text);
     status s = add_pair(t, "message", r, "%s", detail_text(row, DETAIL_MESSAGE));
-    if (!s) s = add_pair(t, "started", r, "%s by process %s on %s", started, detail_text(row, DETAIL_PID), detail_text(row, DETAIL_HOST));
+    if (!s)
+        s = add_pair(t, "started", r, "%s by process %s on %s", started, detail_text(row, DETAIL_PID),
+                     detail_text(row, DETAIL_HOST));
     if (!s) s = add_pair(t, "ended", r, "%s", ended);
-    if (!s) s = add_pair(t, "frames", r, "%s of %s, to time %s", detail_text(row, DETAIL_FRAMES),
-                         detail_text(row, DETAIL_FRAMES_WANTED), time_text);
+    if (!s)
+        s = add_pair(t, "frames", r, "%s of %s, to time %s", detail_text(row, DETAIL_FRAMES),
+                     detail_text(row, DETAIL_FRAMES_WANTED), time_text);
     if (!s) s = add_pair(t, "steps", r, "%s", detail_text(row, DETAIL_STEPS));
     if (!s) s = add_pair(t, "wall", r, "%s", wall);
     return s ? s : add_pair(t, "tags", r, "%s", detail_text(row, DETAIL_TAGS));
@@ -238,12 +248,13 @@ static status show_head(ledger *l, FILE *out, int64_t run, report *r) {
     if (!t) return report_set(r, STATUS_SYSTEM, "out of memory for a table");
     status s = detail_select(l, run, &row, r);
     if (!s) {
-        fprintf(out, "%s  %s  %s\n", detail_text(row, DETAIL_ID), detail_text(row, DETAIL_STATUS), detail_text(row, DETAIL_TITLE));
+        fprintf(out, "%s  %s  %s\n", detail_text(row, DETAIL_ID), detail_text(row, DETAIL_STATUS),
+                detail_text(row, DETAIL_TITLE));
         s = add_progress(t, row, r);
         if (!s) s = add_settings(t, row, r);
         sqlite3_reset(row);
     }
-    if (!s) table_print(t, out, table_terminal_width(out), "  "); /* nothing here may be cut: paths are for copying */
+    if (!s) table_print(t, out, INT_MAX, "  "); /* nothing here is cut or squeezed: paths are for copying */
     table_destroy(t);
     return s;
 }
@@ -251,7 +262,9 @@ static status show_head(ledger *l, FILE *out, int64_t run, report *r) {
 static status add_parameter(void *context, sqlite3_stmt *row, report *r) {
     char value[256];
     format_value(row, sqlite3_column_type(row, 2) == SQLITE_NULL ? 1 : 2, value);
-    const char *const cells[] = {detail_text(row, 0), value, detail_text(row, 3), sqlite3_column_int(row, 4) ? "set" : ""};
+    const char *unit = detail_text(row, 3);
+    const char *const cells[] = {detail_text(row, 0), value, strcmp(unit, "1") == 0 ? "" : unit,
+                                 sqlite3_column_int(row, 4) ? "set" : ""};
     return table_add(context, cells, r);
 }
 
@@ -296,13 +309,23 @@ static status show_section(ledger *l, FILE *out, const section *part, int64_t ru
 
 static status show_text(ledger *l, FILE *out, int64_t run, report *r) {
     const section sections[] = {
-        {"Parameters", detail_parameters_sql, add_parameter, {{.title = ""}, {.title = "", .right = true}, {.title = ""}, {.title = ""}}},
-        {"Measures of the last frame", detail_measures_sql, add_measure, {{.title = ""}, {.title = "", .right = true}, {.title = ""}, {.title = ""}}},
-        {"Events", detail_events_sql, add_event, {{.title = "frame", .right = true}, {.title = "when"}, {.title = "what"}, {.title = ""}}},
+        {"Parameters",
+         detail_parameters_sql,
+         add_parameter,
+         {{.title = ""}, {.title = "", .right = true}, {.title = ""}, {.title = ""}}},
+        {"Measures of the last frame",
+         detail_measures_sql,
+         add_measure,
+         {{.title = ""}, {.title = "", .right = true}, {.title = ""}, {.title = ""}}},
+        {"Events",
+         detail_events_sql,
+         add_event,
+         {{.title = "frame", .right = true}, {.title = "when"}, {.title = "what"}, {.title = ""}}},
         {"Notes", detail_notes_sql, add_note, {{.title = ""}, {.title = ""}, {.title = ""}, {.title = ""}}},
     };
     status s = show_head(l, out, run, r);
-    for (size_t i = 0; i < sizeof sections / sizeof sections[0] && !s; i++) s = show_section(l, out, &sections[i], run, r);
+    for (size_t i = 0; i < sizeof sections / sizeof sections[0] && !s; i++)
+        s = show_section(l, out, &sections[i], run, r);
     return s ? s : output_check(out, r);
 }
 

@@ -20,8 +20,9 @@
 enum { COLUMN_LIMIT = 256 };
 
 status output_check(FILE *out, report *r) {
-    return fflush(out) == 0 && !ferror(out) ? STATUS_OK
-                                           : report_set(r, STATUS_SYSTEM, "cannot write the output: %s", strerror(errno));
+    return fflush(out) == 0 && !ferror(out)
+               ? STATUS_OK
+               : report_set(r, STATUS_SYSTEM, "cannot write the output: %s", strerror(errno));
 }
 
 /* ---- ready-made -------------------------------------------------------------------------------------------------- */
@@ -56,11 +57,11 @@ static status prepare_query(ledger *l, const char *sql, sqlite3_stmt **statement
     *statement = NULL;
     if (sqlite3_prepare_v2(l->database, sql, -1, statement, &tail) != SQLITE_OK)
         return report_input(r, l->path, 0, "SQL", "a query that SQLite understands", sqlite3_errmsg(l->database), NULL);
-    const char *found = !*statement                           ? "nothing"
-                        : !sqlite3_stmt_readonly(*statement)  ? "one that writes"
+    const char *found = !*statement                             ? "nothing"
+                        : !sqlite3_stmt_readonly(*statement)    ? "one that writes"
                         : sqlite3_column_count(*statement) == 0 ? "one without results"
-                        : !only_space(tail)                   ? "more than one"
-                                                              : NULL;
+                        : !only_space(tail)                     ? "more than one"
+                                                                : NULL;
     if (!found) return STATUS_OK;
     sqlite3_finalize(*statement);
     return report_input(r, l->path, 0, "SQL", "one query that only reads", found, NULL);
@@ -85,8 +86,8 @@ static status unknown_argument(sqlite3_stmt *statement, const char *name, report
         const char *parameter = sqlite3_bind_parameter_name(statement, i + 1);
         names[i] = parameter ? parameter + 1 : NULL;
     }
-    return report_input(r, NULL, 0, name, count > 0 ? "a parameter of the query" : "no parameter: the query has none", name,
-                        name_nearest(name, names, count));
+    return report_input(r, NULL, 0, name, count > 0 ? "a parameter of the query" : "no parameter: the query has none",
+                        name, name_nearest(name, names, count));
 }
 
 static status bind_arguments(sqlite3_stmt *statement, const char *const *arguments, int count, report *r) {
@@ -128,7 +129,8 @@ static status each_row(ledger *l, sqlite3_stmt *statement, ledger_row row, void 
 
 /* query_only guards against what sqlite3_stmt_readonly lets pass. */
 static status query(ledger *l, const char *sql, const char *const *arguments, int argument_count,
-                    status (*take)(ledger *l, sqlite3_stmt *statement, void *context, report *r), void *context, report *r) {
+                    status (*take)(ledger *l, sqlite3_stmt *statement, void *context, report *r), void *context,
+                    report *r) {
     sqlite3_stmt *statement;
     status s = ledger_bury(l, r);
     if (!s) s = prepare_query(l, sql, &statement, r);
@@ -223,7 +225,7 @@ static status print_json(ledger *l, sqlite3_stmt *statement, void *context, repo
     return s ? s : output_check(context, r);
 }
 
-status ledger_print_sql(ledger *l, FILE *out, bool json, const char *sql, const char *const *arguments, int argument_count,
-                        report *r) {
+status ledger_print_sql(ledger *l, FILE *out, bool json, const char *sql, const char *const *arguments,
+                        int argument_count, report *r) {
     return query(l, sql, arguments, argument_count, json ? print_json : print_text, out, r);
 }

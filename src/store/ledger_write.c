@@ -50,10 +50,11 @@ static status find_dead(ledger *l, int64_t after, int64_t *run, report *r) {
 
 static status bury_one(ledger *l, int64_t run, report *r) {
     sqlite3_stmt *statement;
-    status s = ledger_statement(l,
-                                "UPDATE runs SET status = 'dead', message = 'its process (' || pid || ' on ' || host || ') ended "
-                                "without a word' WHERE run = ?1 AND status = 'running'",
-                                &statement, r);
+    status s = ledger_statement(
+        l,
+        "UPDATE runs SET status = 'dead', message = 'its process (' || pid || ' on ' || host || ') ended "
+        "without a word' WHERE run = ?1 AND status = 'running'",
+        &statement, r);
     if (s) return s;
     bind_integer(statement, 1, run);
     return ledger_run_statement(l, statement, "mark a dead run", r);
@@ -65,7 +66,8 @@ status ledger_bury(ledger *l, report *r) {
     if (s || run == 0) return s; /* nearly always: a reader then takes no write lock */
     s = ledger_write_begin(l, "mark dead runs", r);
     if (s) return s;
-    for (run = 0; !(s = find_dead(l, run, &run, r)) && run != 0 && !(s = bury_one(l, run, r));) {}
+    for (run = 0; !(s = find_dead(l, run, &run, r)) && run != 0 && !(s = bury_one(l, run, r));) {
+    }
     return ledger_write_end(l, s, "mark dead runs", r);
 }
 
@@ -106,13 +108,15 @@ static void bind_run(sqlite3_stmt *statement, const ledger_run *run) {
     if (run->parent) bind_integer(statement, index, run->parent_frame);
 }
 
-/* Two runs may begin in the same second with the same four digits: nothing is inserted then, and the next id is tried. */
+/* Two runs may begin in the same second with the same four digits: nothing is inserted then, and the next id is tried.
+ */
 static status insert_run(ledger *l, const ledger_run *run, char id[LEDGER_ID], report *r) {
     static const char sql[] =
         "INSERT INTO runs (status, id, started, scene_path, scene_title, scene_hash, command, output, precision, simd, "
         "version, effects, threads, particles, frames_wanted, seed, variant, parent, parent_frame, "
         "host, boot, pid_space, pid, pid_started) "
-        "VALUES ('running', ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, "
+        "VALUES ('running', ?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, "
+        "?21, "
         "?22, ?23) ON CONFLICT (id) DO NOTHING";
     enum { TRIES = 64 };
     process_identity self;
@@ -151,7 +155,8 @@ status ledger_parameter(ledger *l, const char *id, const char *name, const char 
     status s = ledger_write_begin(l, "write a parameter", r);
     if (s) return s;
     s = ledger_key(l, id, &run, r);
-    if (!s) s = ledger_statement(l, "INSERT OR REPLACE INTO run_parameters VALUES (?1, ?2, ?3, ?4, ?5, ?6)", &statement, r);
+    if (!s)
+        s = ledger_statement(l, "INSERT OR REPLACE INTO run_parameters VALUES (?1, ?2, ?3, ?4, ?5, ?6)", &statement, r);
     if (!s) {
         bind_integer(statement, 1, run);
         bind_text(statement, 2, name);
@@ -176,7 +181,8 @@ static status run_on_frames(ledger *l, const char *sql, int64_t run, int64_t fra
     return ledger_run_statement(l, statement, "make room for a frame", r);
 }
 
-static status insert_frame(ledger *l, int64_t run, int64_t frame, double time, int64_t steps, double wall_seconds, report *r) {
+static status insert_frame(ledger *l, int64_t run, int64_t frame, double time, int64_t steps, double wall_seconds,
+                           report *r) {
     sqlite3_stmt *statement;
     status s = ledger_statement(l, "INSERT INTO frames VALUES (?1, ?2, ?3, ?4, ?5)", &statement, r);
     if (s) return s;
@@ -191,8 +197,11 @@ static status insert_frame(ledger *l, int64_t run, int64_t frame, double time, i
 static status insert_value(ledger *l, int64_t run, int64_t frame, const ledger_value *value, report *r) {
     sqlite3_stmt *name, *measure;
     status s = ledger_statement(l, "INSERT INTO measures (name) VALUES (?1) ON CONFLICT (name) DO NOTHING", &name, r);
-    if (!s) s = ledger_statement(l, "INSERT OR REPLACE INTO run_measures VALUES "
-                                    "(?1, ?2, (SELECT measure FROM measures WHERE name = ?3), ?4)", &measure, r);
+    if (!s)
+        s = ledger_statement(l,
+                             "INSERT OR REPLACE INTO run_measures VALUES "
+                             "(?1, ?2, (SELECT measure FROM measures WHERE name = ?3), ?4)",
+                             &measure, r);
     if (s) return s;
     bind_text(name, 1, value->name);
     s = ledger_run_statement(l, name, "write a measure's name", r);
@@ -212,8 +221,10 @@ status ledger_frame(ledger *l, const char *id, int64_t frame, double time, int64
     s = ledger_key(l, id, &run, r);
     if (!s) s = run_on_frames(l, "DELETE FROM frames WHERE run = ?1 AND frame >= ?2", run, frame, r);
     /* Who writes a frame is alive, whatever an onlooker with another view of the processes made of it. */
-    if (!s) s = run_on_frames(l, "UPDATE runs SET status = 'running', message = NULL WHERE run = ?1 AND ?2 >= 0 AND status = 'dead'",
-                              run, frame, r);
+    if (!s)
+        s = run_on_frames(
+            l, "UPDATE runs SET status = 'running', message = NULL WHERE run = ?1 AND ?2 >= 0 AND status = 'dead'", run,
+            frame, r);
     if (!s) s = insert_frame(l, run, frame, time, steps, wall_seconds, r);
     for (int i = 0; i < count && !s; i++) s = insert_value(l, run, frame, &values[i], r);
     return ledger_write_end(l, s, "write a frame", r);
@@ -225,8 +236,9 @@ status ledger_event(ledger *l, const char *id, int64_t frame, const char *kind, 
     status s = ledger_write_begin(l, "write an event", r);
     if (s) return s;
     s = ledger_key(l, id, &run, r);
-    if (!s) s = ledger_statement(l, "INSERT INTO events (run, frame, happened, kind, text) VALUES (?1, ?2, ?3, ?4, ?5)",
-                                 &statement, r);
+    if (!s)
+        s = ledger_statement(l, "INSERT INTO events (run, frame, happened, kind, text) VALUES (?1, ?2, ?3, ?4, ?5)",
+                             &statement, r);
     if (!s) {
         bind_integer(statement, 1, run);
         bind_integer(statement, 2, frame);
@@ -249,8 +261,8 @@ static status check_status(const char *run_status, report *r) {
                         name_nearest(run_status, known, KNOWN));
 }
 
-status ledger_finish(ledger *l, const char *id, const char *run_status, int64_t frames, int64_t steps, double wall_seconds,
-                     const char *message, const char *summary_json, report *r) {
+status ledger_finish(ledger *l, const char *id, const char *run_status, int64_t frames, int64_t steps,
+                     double wall_seconds, const char *message, const char *summary_json, report *r) {
     static const char sql[] = "UPDATE runs SET status = ?2, ended = ?3, frames = ?4, steps = ?5, wall_seconds = ?6, "
                               "message = ?7, summary = ?8 WHERE run = ?1";
     int64_t run;
@@ -280,8 +292,9 @@ static status check_free(ledger *l, int64_t run, const char *id, const char *wan
     bool row;
     process_identity self, process = {0};
     process_self(&self);
-    status s = ledger_statement(l, "SELECT host, boot, pid_space, pid, pid_started FROM runs WHERE run = ?1 AND status = 'running'",
-                                &statement, r);
+    status s = ledger_statement(
+        l, "SELECT host, boot, pid_space, pid, pid_started FROM runs WHERE run = ?1 AND status = 'running'", &statement,
+        r);
     if (s) return s;
     bind_integer(statement, 1, run);
     s = ledger_next(l, statement, &row, "look a run up", r);
@@ -296,7 +309,8 @@ static status check_free(ledger *l, int64_t run, const char *id, const char *wan
 
 status ledger_reopen(ledger *l, const char *id, report *r) {
     static const char sql[] =
-        "UPDATE runs SET status = 'running', ended = NULL, frames = NULL, steps = NULL, wall_seconds = NULL, message = NULL, "
+        "UPDATE runs SET status = 'running', ended = NULL, frames = NULL, steps = NULL, wall_seconds = NULL, message = "
+        "NULL, "
         "summary = NULL, host = ?2, boot = ?3, pid_space = ?4, pid = ?5, pid_started = ?6 WHERE run = ?1";
     int64_t run;
     sqlite3_stmt *statement;
@@ -337,7 +351,8 @@ static status check_tag(const char *tag, report *r) {
     size_t length = strlen(tag);
     bool good = length > 0 && length <= LONGEST && !strchr(tag, ',');
     for (size_t i = 0; i < length && good; i++) good = (unsigned char)tag[i] >= 0x20 && tag[i] != 0x7f;
-    return good ? STATUS_OK : report_input(r, NULL, 0, "tag", "1 to 64 bytes without commas or control characters", tag, NULL);
+    return good ? STATUS_OK
+                : report_input(r, NULL, 0, "tag", "1 to 64 bytes without commas or control characters", tag, NULL);
 }
 
 /* The report for a tag that the run does not have. */

@@ -23,11 +23,11 @@ typedef struct known {
 } known;
 
 typedef struct series {
-    char *old;        /* the series that was there, or NULL */
+    char *old; /* the series that was there, or NULL */
     size_t old_size;
-    known *known;     /* [known_count], ascending */
+    known *known; /* [known_count], ascending */
     size_t known_count, known_capacity;
-    char *text;       /* the new one */
+    char *text; /* the new one */
     size_t used, capacity;
 } series;
 
@@ -42,8 +42,8 @@ static int by_number(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Takes what it can from the old text. Only lines that look as append_line writes them are believed: anything else is as good
- * as absent, and the frame itself is asked. */
+/* Takes what it can from the old text. Only lines that look as append_line writes them are believed: anything else is
+ * as good as absent, and the frame itself is asked. */
 static status parse_old(series *s, report *r) {
     size_t lines = 0;
     for (const char *at = s->old; at && (at = strstr(at, ENTRY_FRONT)); at++) lines++;
@@ -72,7 +72,8 @@ static bool ask_frame(const char *folder, int64_t number, char time[JSON_NUMBER]
     report ignored;
     hid_t file;
     double value;
-    if (path_format(path, &ignored, "%s/%06" PRId64 ".hdf", folder, number) || hdf_open(path, &file, &ignored)) return false;
+    if (path_format(path, &ignored, "%s/%06" PRId64 ".hdf", folder, number) || hdf_open(path, &file, &ignored))
+        return false;
     bool good = hdf_read_number(file, path, "time", &value, &ignored) == STATUS_OK;
     H5Fclose(file);
     if (good) json_format_number(value, time);
@@ -80,12 +81,13 @@ static bool ask_frame(const char *folder, int64_t number, char time[JSON_NUMBER]
 }
 
 static void append_line(series *s, int64_t number, const char *time, bool first) {
-    int written = snprintf(s->text + s->used, s->capacity - s->used, "%s    " ENTRY_FRONT "%06" PRId64 ".hdf\", \"time\": %s}",
-                           first ? "" : ",\n", number, time);
+    int written = snprintf(s->text + s->used, s->capacity - s->used,
+                           "%s    " ENTRY_FRONT "%06" PRId64 ".hdf\", \"time\": %s}", first ? "" : ",\n", number, time);
     s->used += (size_t)written;
 }
 
-static status compose(series *s, const char *folder, const file_numbers *numbers, int64_t fresh, int64_t limit, report *r) {
+static status compose(series *s, const char *folder, const file_numbers *numbers, int64_t fresh, int64_t limit,
+                      report *r) {
     static const char front[] = "{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n", back[] = "\n  ]\n}\n";
     s->capacity = sizeof front + sizeof back + numbers->count * LINE;
     s->text = memory_allocate(s->capacity);

@@ -6,9 +6,9 @@
 
 #include <stdint.h>
 
-/* Rewrites FOLDER/frames.hdf.series so that it names exactly the frames that are in the folder and can be opened. Times are
- * taken from the series that is there; frames it does not know, and `fresh` (−1: none), are asked themselves. Names above
- * `limit` are left out (−1: no limit). Syncs the folder. */
+/* Rewrites FOLDER/frames.hdf.series so that it names exactly the frames that are in the folder and can be opened. Times
+ * are taken from the series that is there; frames it does not know, and `fresh` (−1: none), are asked themselves. Names
+ * above `limit` are left out (−1: no limit). Syncs the folder. */
 status series_refresh(const char *folder, int64_t fresh, int64_t limit, report *r);
 
 #endif

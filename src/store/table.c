@@ -47,8 +47,13 @@ table *table_create(const table_column *columns, int count) {
         arena_destroy(memory);
         return NULL;
     }
-    *t = (table){.memory = memory, .count = count, .columns = copy, .widths = widths, .fitted = widths + n,
-                 .titles = titles, .used = used};
+    *t = (table){.memory = memory,
+                 .count = count,
+                 .columns = copy,
+                 .widths = widths,
+                 .fitted = widths + n,
+                 .titles = titles,
+                 .used = used};
     return t;
 }
 

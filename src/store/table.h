@@ -11,9 +11,9 @@ typedef struct table table;
 
 typedef struct table_column {
     const char *title;
-    bool right;        /* figures stand to the right */
-    int least;         /* the width it may be cut to when room is short; 0: never cut */
-    bool keep;         /* shown even when no row has anything in it */
+    bool right; /* figures stand to the right */
+    int least;  /* the width it may be cut to when room is short; 0: never cut */
+    bool keep;  /* shown even when no row has anything in it */
 } table_column;
 
 /* A table of `count` columns, which are copied. NULL when out of memory. */

@@ -27,8 +27,8 @@ static status write_kind(hid_t group, const char *path, report *r) {
     H5Tset_strpad(type, H5T_STR_NULLPAD);
     hid_t name = H5Acreate2(group, "Type", type, scalar, H5P_DEFAULT, H5P_DEFAULT);
     hid_t number = H5Acreate2(group, "Version", H5T_STD_I64LE, pair, H5P_DEFAULT, H5P_DEFAULT);
-    bool good = name >= 0 && number >= 0 && H5Awrite(name, type, kind) >= 0 &&
-                H5Awrite(number, H5T_NATIVE_INT64, version) >= 0;
+    bool good =
+        name >= 0 && number >= 0 && H5Awrite(name, type, kind) >= 0 && H5Awrite(number, H5T_NATIVE_INT64, version) >= 0;
     status s = good ? STATUS_OK : hdf_fail(r, path, "write the VTKHDF attributes");
     H5Aclose(number);
     H5Aclose(name);
@@ -43,8 +43,9 @@ static status write_cells(hid_t file, const char *path, int64_t count, int defla
     size_t cells = (size_t)count;
     int64_t *offsets = memory_allocate_array(cells + 1, sizeof *offsets);
     uint8_t *types = memory_allocate(cells);
-    status s = offsets && types ? STATUS_OK
-                                : report_set(r, STATUS_SYSTEM, "%s: out of memory for the VTK view of %zu points", path, cells);
+    status s = offsets && types
+                   ? STATUS_OK
+                   : report_set(r, STATUS_SYSTEM, "%s: out of memory for the VTK view of %zu points", path, cells);
     if (!s) {
         for (size_t i = 0; i <= cells; i++) offsets[i] = (int64_t)i;
         memset(types, VTK_VERTEX, cells);
@@ -64,7 +65,8 @@ static status write_cells(hid_t file, const char *path, int64_t count, int defla
     return s;
 }
 
-static status link_to(hid_t group, const char *path, const char *name, const char *array, const char *source, report *r) {
+static status link_to(hid_t group, const char *path, const char *name, const char *array, const char *source,
+                      report *r) {
     char target[RECORD_NAME + 1];
     snprintf(target, sizeof target, "/%s", array);
     herr_t made = source ? H5Lcreate_external(source, target, group, name, H5P_DEFAULT, H5P_DEFAULT)
@@ -72,9 +74,10 @@ static status link_to(hid_t group, const char *path, const char *name, const cha
     return made < 0 ? hdf_fail(r, path, "link an array into the VTK view") : STATUS_OK;
 }
 
-/* Every array of the set with a row per point, but the points themselves; "a/b" becomes "a_b", since a link is one name. */
-static status link_fields(hid_t group, const char *path, const record_list *records, const char *set, const char *source,
-                          report *r) {
+/* Every array of the set with a row per point, but the points themselves; "a/b" becomes "a_b", since a link is one
+ * name. */
+static status link_fields(hid_t group, const char *path, const record_list *records, const char *set,
+                          const char *source, report *r) {
     const record *points = vtkhdf_points(records, set);
     size_t front = strlen(set) + 1;
     status s = STATUS_OK;

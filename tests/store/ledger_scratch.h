@@ -42,7 +42,8 @@ static inline const char *sql_text(const char *name, const char *sql) {
     text[0] = '\0';
     if (sqlite3_open(in_scratch("%s", name), &database)) abort();
     sqlite3_busy_timeout(database, 10000);
-    if (sqlite3_prepare_v2(database, sql, -1, &statement, NULL)) snprintf(text, sizeof text, "%s", sqlite3_errmsg(database));
+    if (sqlite3_prepare_v2(database, sql, -1, &statement, NULL))
+        snprintf(text, sizeof text, "%s", sqlite3_errmsg(database));
     if (statement && sqlite3_step(statement) == SQLITE_ROW && sqlite3_column_text(statement, 0))
         snprintf(text, sizeof text, "%s", (const char *)sqlite3_column_text(statement, 0));
     sqlite3_finalize(statement);
@@ -70,7 +71,8 @@ static inline void sql_do(const char *name, const char *sql) {
 }
 
 /* Writes a run with parameters, `frames` frames of measures and an end ("running": none). */
-static inline void write_run(ledger *l, const char *variant, double eta, int frames, const char *end, char id[LEDGER_ID]) {
+static inline void write_run(ledger *l, const char *variant, double eta, int frames, const char *end,
+                             char id[LEDGER_ID]) {
     report r;
     ledger_run run = sample_run(variant);
     status s = ledger_begin(l, &run, id, &r);
@@ -78,7 +80,8 @@ static inline void write_run(ledger *l, const char *variant, double eta, int fra
     if (!s) s = ledger_parameter(l, id, "gamma", "1", 10, NULL, false, &r);
     if (!s) s = ledger_parameter(l, id, "kernel", "", 0, "cubic", false, &r);
     for (int frame = 0; frame <= frames && !s; frame++) {
-        const ledger_value values[] = {{"kinetic", 1.5 * frame}, {"broken_fraction", eta * frame / 10}, {"steady", 1.0 / 3.0}};
+        const ledger_value values[] = {
+            {"kinetic", 1.5 * frame}, {"broken_fraction", eta * frame / 10}, {"steady", 1.0 / 3.0}};
         s = ledger_frame(l, id, frame, frame / 24.0, 10 * frame, 0.5 * frame, values, 3, &r);
     }
     if (!s && strcmp(end, "running") != 0)

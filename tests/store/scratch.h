@@ -152,14 +152,16 @@ static inline void fill_sheet(record_list *list, int n) {
         record_add(list, "sheet/diffused", RECORD_F32, n, 1, "1", (void **)&diffused, &r) ||
         record_add(list, "sheet/bonds", RECORD_I32, 2 * n, 2, "", (void **)&bonds, &r))
         abort();
-    for (int i = 0; i < n; i++) position[3 * i] = (float)i, position[3 * i + 1] = 100.0f, diffused[i] = 1.0f / (float)(i + 1);
+    for (int i = 0; i < n; i++)
+        position[3 * i] = (float)i, position[3 * i + 1] = 100.0f, diffused[i] = 1.0f / (float)(i + 1);
 }
 
 static inline bool same_records(const record_list *a, const record_list *b) {
     if (a->count != b->count) return false;
     for (int i = 0; i < a->count; i++) {
         const record *x = &a->items[i], *y = record_find(b, x->name);
-        if (!y || x->type != y->type || x->count != y->count || x->components != y->components || strcmp(x->unit, y->unit) != 0)
+        if (!y || x->type != y->type || x->count != y->count || x->components != y->components ||
+            strcmp(x->unit, y->unit) != 0)
             return false;
         size_t bytes = (size_t)x->count * (size_t)x->components * record_type_size(x->type);
         if (memcmp(x->data, y->data, bytes) != 0) return false;

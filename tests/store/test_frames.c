@@ -1,4 +1,5 @@
-/* Frames: what is written comes back, in the layout that docs/file-format.md promises, and the series names what is there. */
+/* Frames: what is written comes back, in the layout that docs/file-format.md promises, and the series names what is
+ * there. */
 #include "base/memory.h"
 #include "base/random.h"
 #include "check.h"
@@ -12,7 +13,8 @@
 
 /* ---- contents ---------------------------------------------------------------------------------------------------- */
 
-static void add(record_list *list, const char *name, record_type type, int64_t count, int components, const void *values) {
+static void add(record_list *list, const char *name, record_type type, int64_t count, int components,
+                const void *values) {
     void *data;
     report r;
     if (record_add(list, name, type, count, components, "unit", &data, &r)) abort();
@@ -20,7 +22,8 @@ static void add(record_list *list, const char *name, record_type type, int64_t c
 }
 
 static void every_type_comes_back_to_the_bit(void) {
-    const uint32_t odd32[6] = {0x7fc12345u, 0x80000000u, 0x7f800000u, 1u, 0xff7fffffu, 0x3f800000u}; /* NaN payload, −0, ∞ … */
+    const uint32_t odd32[6] = {0x7fc12345u, 0x80000000u, 0x7f800000u,
+                               1u,          0xff7fffffu, 0x3f800000u}; /* NaN payload, −0, ∞ … */
     const uint64_t odd64[3] = {0x7ff8dead00000001u, 0x8000000000000000u, 1u};
     const int32_t i32[2] = {INT32_MIN, INT32_MAX};
     const int64_t i64[2] = {INT64_MIN, INT64_MAX};
@@ -108,8 +111,10 @@ static const char *shape_of(hid_t file, const char *name) {
     hid_t space = H5Dget_space(set), type = H5Dget_type(set);
     hsize_t dims[4];
     int rank = H5Sget_simple_extent_dims(space, dims, NULL), used = 0;
-    for (int i = 0; i < rank; i++) used += snprintf(text + used, sizeof text - (size_t)used, "%s%d", i ? "," : "", (int)dims[i]);
-    snprintf(text + used, sizeof text - (size_t)used, " %c%d", H5Tget_class(type) == H5T_FLOAT ? 'f' : 'i', 8 * (int)H5Tget_size(type));
+    for (int i = 0; i < rank; i++)
+        used += snprintf(text + used, sizeof text - (size_t)used, "%s%d", i ? "," : "", (int)dims[i]);
+    snprintf(text + used, sizeof text - (size_t)used, " %c%d", H5Tget_class(type) == H5T_FLOAT ? 'f' : 'i',
+             8 * (int)H5Tget_size(type));
     H5Tclose(type);
     H5Sclose(space);
     H5Dclose(set);
@@ -140,7 +145,8 @@ static void layout_is_as_documented(void) {
     hid_t file = H5Fopen(in_scratch("layout/frames/000007.hdf"), H5F_ACC_RDONLY, H5P_DEFAULT);
     CHECK(file >= 0);
     CHECK(text_attribute_is(file, "format", "sunder frame 1") && text_attribute_is(file, "units", "cgs"));
-    CHECK(text_attribute_is(file, "run_id", "20261122-061502-3f9a") && text_attribute_is(file, "scene_title", "Tube pull"));
+    CHECK(text_attribute_is(file, "run_id", "20261122-061502-3f9a") &&
+          text_attribute_is(file, "scene_title", "Tube pull"));
     CHECK(text_attribute_is(file, "scene_hash", "0123456789abcdef") && text_attribute_is(file, "version", "0.1.0"));
     CHECK(text_attribute_is(file, "precision", "f32") && text_attribute_is(file, "simd", "avx2"));
     CHECK(integer_attribute(file, "frame") == 7 && integer_attribute(file, "step") == 70);
@@ -157,7 +163,8 @@ static void layout_is_as_documented(void) {
 static void the_vtk_view_is_version_1(void) {
     const char *run = make_run("vtk");
     write_solid_frame(run, 50, 0);
-    hid_t file = H5Fopen(in_scratch("vtk/frames/000000.hdf"), H5F_ACC_RDONLY, H5P_DEFAULT), view = H5Gopen2(file, "/VTKHDF", H5P_DEFAULT);
+    hid_t file = H5Fopen(in_scratch("vtk/frames/000000.hdf"), H5F_ACC_RDONLY, H5P_DEFAULT),
+          view = H5Gopen2(file, "/VTKHDF", H5P_DEFAULT);
     CHECK(text_attribute_is(view, "Type", "UnstructuredGrid"));
     int64_t version[2] = {-1, -1};
     hid_t attribute = H5Aopen(view, "Version", H5P_DEFAULT);
@@ -165,7 +172,8 @@ static void the_vtk_view_is_version_1(void) {
     H5Aclose(attribute);
     CHECK(first_integer(file, "/VTKHDF/NumberOfPoints") == 50 && first_integer(file, "/VTKHDF/NumberOfCells") == 50);
     CHECK(first_integer(file, "/VTKHDF/NumberOfConnectivityIds") == 50);
-    CHECK(strcmp(shape_of(file, "/VTKHDF/Offsets"), "51 i64") == 0 && strcmp(shape_of(file, "/VTKHDF/Connectivity"), "50 i64") == 0);
+    CHECK(strcmp(shape_of(file, "/VTKHDF/Offsets"), "51 i64") == 0 &&
+          strcmp(shape_of(file, "/VTKHDF/Connectivity"), "50 i64") == 0);
     CHECK(strcmp(shape_of(file, "/VTKHDF/Types"), "50 i8") == 0 && first_integer(file, "/VTKHDF/Types") == 1);
     CHECK(link_is(file, "/VTKHDF/Points", H5L_TYPE_SOFT, "/solid/position"));
     CHECK(link_is(file, "/VTKHDF/PointData/damage", H5L_TYPE_SOFT, "/solid/damage"));
@@ -243,8 +251,12 @@ static void the_series_follows_the_files(void) {
 }
 
 static void a_lost_or_spoilt_series_is_made_anew(void) {
-    static const char *const spoilt[] = {"", "{", "\0\0\0\0", "{\"name\": \"000000.hdf\", \"time\": nonsense}",
-                                         "{\"name\": \"999999.hdf\", \"time\": 4}", "{\"name\": \"000000.hdf\", \"time\": 0"};
+    static const char *const spoilt[] = {"",
+                                         "{",
+                                         "\0\0\0\0",
+                                         "{\"name\": \"000000.hdf\", \"time\": nonsense}",
+                                         "{\"name\": \"999999.hdf\", \"time\": 4}",
+                                         "{\"name\": \"000000.hdf\", \"time\": 0"};
     const char *run = make_run("spoilt");
     char path[SCRATCH_PATH];
     snprintf(path, sizeof path, "%s/frames/frames.hdf.series", run);
@@ -307,7 +319,8 @@ static void folders_are_made_and_guarded(void) {
     write_text(in_scratch("a/b/c/frames/.000001.hdf.999999999.tmp"), "x", 1); /* left by a killed writer */
     write_text(in_scratch("a/b/c/frames/.mine.tmp"), "x", 1);
     CHECK(run_folder_create(in_scratch("a/b/c"), true, &r) == STATUS_OK);
-    CHECK(!exists(in_scratch("a/b/c/frames/.000001.hdf.999999999.tmp")) && exists(in_scratch("a/b/c/frames/.mine.tmp")));
+    CHECK(!exists(in_scratch("a/b/c/frames/.000001.hdf.999999999.tmp")) &&
+          exists(in_scratch("a/b/c/frames/.mine.tmp")));
     CHECK(exists(in_scratch("a/b/c/frames/000000.hdf")));
     write_text(in_scratch("file"), "x", 1);
     CHECK(run_folder_create(in_scratch("file"), false, &r) == STATUS_INPUT && strstr(r.expected, "folder"));
@@ -349,7 +362,8 @@ static void a_run_is_cut_back(void) {
     record_clear(&list);
     CHECK(frame_truncate(run, 3, &r) == STATUS_OK);
     CHECK(frame_last(run) == 3);
-    CHECK(count_files(in_scratch("cut/frames"), ".hdf") == 4 && count_files(in_scratch("cut/frames/sheet"), ".hdf") == 4);
+    CHECK(count_files(in_scratch("cut/frames"), ".hdf") == 4 &&
+          count_files(in_scratch("cut/frames/sheet"), ".hdf") == 4);
     CHECK(count_files(in_scratch("cut"), ".hdf") == 4);
     size_t size;
     char *series = read_text(in_scratch("cut/frames/frames.hdf.series"), &size);
@@ -359,7 +373,8 @@ static void a_run_is_cut_back(void) {
     CHECK(frame_truncate(in_scratch("nowhere"), 0, &r) == STATUS_OK);
 }
 
-/* A program that holds HDF5's lock on a frame (a viewer that writes, a network file system that cannot lock) does not stop us. */
+/* A program that holds HDF5's lock on a frame (a viewer that writes, a network file system that cannot lock) does not
+ * stop us. */
 static void locks_do_not_matter(void) {
     const char *run = make_run("locks");
     record_list list;
@@ -377,14 +392,17 @@ static void locks_do_not_matter(void) {
 
 static void texts_are_written_whole(void) {
     report r;
-    CHECK(file_write_atomic(in_scratch("result.json"), "{}", 2, &r) == STATUS_OK && size_of(in_scratch("result.json")) == 2);
-    CHECK(file_write_atomic(in_scratch("result.json"), "", 0, &r) == STATUS_OK && size_of(in_scratch("result.json")) == 0);
+    CHECK(file_write_atomic(in_scratch("result.json"), "{}", 2, &r) == STATUS_OK &&
+          size_of(in_scratch("result.json")) == 2);
+    CHECK(file_write_atomic(in_scratch("result.json"), "", 0, &r) == STATUS_OK &&
+          size_of(in_scratch("result.json")) == 0);
     CHECK(file_write_atomic(in_scratch("missing/result.json"), "{}", 2, &r) == STATUS_SYSTEM);
     CHECK(strstr(r.file, "missing/result.json") && strstr(r.message, "No such file"));
     CHECK(count_files(scratch, ".tmp") == 0);
 }
 
-/* The sum of all of it: whatever allocation fails, it is said, nothing leaks, and the folder holds whole frames only. */
+/* The sum of all of it: whatever allocation fails, it is said, nothing leaks, and the folder holds whole frames only.
+ */
 static void memory_may_run_out(void) {
     const char *run = make_run("memory");
     record_list list, back;

@@ -33,12 +33,15 @@ static status try_open(const char *name, report *r) {
 static void what_is_no_ledger_is_refused(void) {
     report r;
     ledger *l;
-    write_text(in_scratch("garbage.db"), "this is a text of some length, and no database at all .......................", 76);
-    CHECK(try_open("garbage.db", &r) == STATUS_INPUT && strstr(r.found, "no SQLite database") && strstr(r.file, "garbage.db"));
+    write_text(in_scratch("garbage.db"),
+               "this is a text of some length, and no database at all .......................", 76);
+    CHECK(try_open("garbage.db", &r) == STATUS_INPUT && strstr(r.found, "no SQLite database") &&
+          strstr(r.file, "garbage.db"));
     CHECK(size_of(in_scratch("garbage.db")) == 76);
     sql_do("other.db", "CREATE TABLE t (x)");
     CHECK(try_open("other.db", &r) == STATUS_INPUT && strstr(r.found, "another program's"));
-    CHECK(sql_is("other.db", "SELECT count(*) FROM sqlite_schema", "1") && sql_is("other.db", "PRAGMA journal_mode", "delete"));
+    CHECK(sql_is("other.db", "SELECT count(*) FROM sqlite_schema", "1") &&
+          sql_is("other.db", "PRAGMA journal_mode", "delete"));
     ledger_close(open_ledger("future.db"));
     sql_do("future.db", "PRAGMA user_version = 99");
     CHECK(try_open("future.db", &r) == STATUS_INPUT && strstr(r.found, "schema 99") && strstr(r.expected, "schema 2"));
@@ -54,7 +57,8 @@ static int open_without_right(void *context) {
     (void)context;
     report r;
     if (getuid() == 0 && (setgroups(0, NULL) != 0 || setgid(65534) != 0 || setuid(65534) != 0)) return 77;
-    if (try_open("locked/ledger.db", &r) != STATUS_SYSTEM || !strstr(r.file, "locked") || !strstr(r.message, "Permission denied"))
+    if (try_open("locked/ledger.db", &r) != STATUS_SYSTEM || !strstr(r.file, "locked") ||
+        !strstr(r.message, "Permission denied"))
         return 1;
     if (try_open("locked/below/ledger.db", &r) != STATUS_SYSTEM || !strstr(r.message, "Permission denied")) return 2;
     if (try_open("readable.db", &r) != STATUS_SYSTEM || !strstr(r.message, "Permission denied")) return 3;
@@ -75,10 +79,12 @@ static void an_older_schema_is_brought_up(void) {
     char *schema = read_text(SUNDER_SOURCE "/db/schema/001_initial.sql", &size);
     sql_do("old.db", schema);
     free(schema);
-    sql_do("old.db", "PRAGMA user_version = 1; INSERT INTO migrations VALUES (1, '001_initial', 'then'); "
-                     "INSERT INTO runs (id, status, started, scene_path, scene_title, scene_hash, command, output, precision, simd, "
-                     "version, effects, threads, particles, frames_wanted, seed, host, boot, pid_space, pid, pid_started) VALUES "
-                     "('20250101-000000-aaaa', 'done', 0, '', 'Old', '', '', '', '', '', '', '', 1, 1, 1, 1, 'h', '', '', 1, 1)");
+    sql_do(
+        "old.db",
+        "PRAGMA user_version = 1; INSERT INTO migrations VALUES (1, '001_initial', 'then'); "
+        "INSERT INTO runs (id, status, started, scene_path, scene_title, scene_hash, command, output, precision, simd, "
+        "version, effects, threads, particles, frames_wanted, seed, host, boot, pid_space, pid, pid_started) VALUES "
+        "('20250101-000000-aaaa', 'done', 0, '', 'Old', '', '', '', '', '', '', '', 1, 1, 1, 1, 'h', '', '', 1, 1)");
     ledger_close(open_ledger("old.db"));
     CHECK(sql_is("old.db", "PRAGMA user_version", "2"));
     CHECK(sql_is("old.db", "SELECT title FROM runs_view", "Old"));
@@ -96,7 +102,8 @@ static void paths_follow_the_environment(void) {
     CHECK(ledger_default_path(path, sizeof path, &r) == STATUS_OK && strcmp(path, "/data/sunder/ledger.db") == 0);
     CHECK(ledger_runs_folder(path, sizeof path, &r) == STATUS_OK && strcmp(path, "/data/sunder/runs") == 0);
     setenv("XDG_DATA_HOME", "relative", 1);
-    CHECK(ledger_runs_folder(path, sizeof path, &r) == STATUS_OK && strcmp(path, "/home/somebody/.local/share/sunder/runs") == 0);
+    CHECK(ledger_runs_folder(path, sizeof path, &r) == STATUS_OK &&
+          strcmp(path, "/home/somebody/.local/share/sunder/runs") == 0);
     setenv("SUNDER_DB", "here.db", 1);
     CHECK(ledger_default_path(path, sizeof path, &r) == STATUS_OK && strcmp(path, "here.db") == 0);
     CHECK(ledger_default_path(path, 4, &r) == STATUS_INPUT);
@@ -122,17 +129,25 @@ static void a_run_is_remembered(void) {
     const ledger_value values[] = {{"kinetic", 0.1}, {"damage_max", (double)NAN}, {"blow_up", (double)INFINITY}};
     CHECK(ledger_frame(l, id, 0, 0, 0, 0.25, values, 3, &r) == STATUS_OK);
     CHECK(ledger_event(l, id, 0, "first_crack", "particle 17", &r) == STATUS_OK);
+    CHECK(ledger_set_output(l, id, "/data/elsewhere", &r) == STATUS_OK);
     CHECK(ledger_finish(l, id, "done", 1, 10, 2.5, "fine", "{\"ok\": 1}", &r) == STATUS_OK);
     ledger_close(l);
-    CHECK(sql_is("run.db", "SELECT status || '|' || variant || '|' || frames || '|' || steps || '|' || wall_seconds || '|' || message "
-                           "|| '|' || parent || '|' || parent_frame FROM runs", "done|full|1|10|2.5|fine|20250101-000000-aaaa|12"));
-    CHECK(sql_is("run.db", "SELECT group_concat(name || '=' || coalesce(text, number) || ' ' || unit || from_set) FROM run_parameters",
-                 "eta=0.5 11,kernel=cubic 0,stop=inf s0"));
+    CHECK(sql_is(
+        "run.db",
+        "SELECT status || '|' || variant || '|' || frames || '|' || steps || '|' || wall_seconds || '|' || message "
+        "|| '|' || parent || '|' || parent_frame FROM runs",
+        "done|full|1|10|2.5|fine|20250101-000000-aaaa|12"));
+    CHECK(sql_is(
+        "run.db",
+        "SELECT group_concat(name || '=' || coalesce(text, number) || ' ' || unit || from_set) FROM run_parameters",
+        "eta=0.5 11,kernel=cubic 0,stop=inf s0"));
     CHECK(sql_is("run.db", "SELECT number FROM run_parameters WHERE name = 'kernel'", ""));
-    CHECK(sql_is("run.db", "SELECT group_concat(name || '=' || coalesce(value, 'NULL')) FROM (SELECT * FROM final_measures ORDER BY name)",
-                 "blow_up=NULL,damage_max=NULL,kinetic=0.1"));
+    CHECK(sql_is(
+        "run.db",
+        "SELECT group_concat(name || '=' || coalesce(value, 'NULL')) FROM (SELECT * FROM final_measures ORDER BY name)",
+        "blow_up=NULL,damage_max=NULL,kinetic=0.1"));
     CHECK(sql_is("run.db", "SELECT kind || text FROM events", "first_crackparticle 17"));
-    CHECK(sql_is("run.db", "SELECT summary ->> 'ok' FROM runs_view", "1"));
+    CHECK(sql_is("run.db", "SELECT summary ->> 'ok' || output FROM runs_view", "1/data/elsewhere"));
 }
 
 static void unknown_runs_and_states_are_told(void) {
@@ -170,14 +185,17 @@ static void a_batch_is_all_or_nothing(void) {
     ledger_run run = sample_run(NULL);
     ledger *l = open_ledger("batch.db");
     CHECK(ledger_batch_begin(l, &r) == STATUS_OK);
-    CHECK(ledger_begin(l, &run, id, &r) == STATUS_OK && ledger_parameter(l, id, "eta", "", 1, NULL, false, &r) == STATUS_OK);
+    CHECK(ledger_begin(l, &run, id, &r) == STATUS_OK &&
+          ledger_parameter(l, id, "eta", "", 1, NULL, false, &r) == STATUS_OK);
     CHECK(sql_is("batch.db", "SELECT count(*) FROM runs", "0"));
     CHECK(ledger_batch_end(l, STATUS_DIVERGED, &r) == STATUS_DIVERGED);
     CHECK(sql_is("batch.db", "SELECT count(*) FROM runs", "0"));
     CHECK(ledger_batch_begin(l, &r) == STATUS_OK && ledger_batch_begin(l, &r) == STATUS_OK);
-    CHECK(ledger_begin(l, &run, id, &r) == STATUS_OK && ledger_parameter(l, id, "eta", "", 1, NULL, false, &r) == STATUS_OK);
+    CHECK(ledger_begin(l, &run, id, &r) == STATUS_OK &&
+          ledger_parameter(l, id, "eta", "", 1, NULL, false, &r) == STATUS_OK);
     CHECK(ledger_batch_end(l, STATUS_OK, &r) == STATUS_OK && sql_is("batch.db", "SELECT count(*) FROM runs", "0"));
-    CHECK(ledger_batch_end(l, STATUS_OK, &r) == STATUS_OK && sql_is("batch.db", "SELECT count(*) FROM run_parameters", "1"));
+    CHECK(ledger_batch_end(l, STATUS_OK, &r) == STATUS_OK &&
+          sql_is("batch.db", "SELECT count(*) FROM run_parameters", "1"));
     ledger_close(l);
 }
 
@@ -197,9 +215,11 @@ static void tags_notes_and_removal(void) {
     CHECK(sql_is("tags.db", "SELECT notes FROM runs_view WHERE variant = 'a'", "tears too late"));
     CHECK(ledger_event(l, id, 1, "warning", "x", &r) == STATUS_OK);
     CHECK(ledger_remove(l, id, &r) == STATUS_OK && ledger_remove(l, id, &r) == STATUS_INPUT);
-    CHECK(sql_is("tags.db", "SELECT (SELECT count(*) FROM runs) || (SELECT count(*) FROM tags) || (SELECT count(*) FROM notes) || "
-                            "(SELECT count(*) FROM events) || (SELECT count(DISTINCT run) FROM run_measures) || "
-                            "(SELECT count(DISTINCT run) FROM run_parameters)", "100011"));
+    CHECK(sql_is("tags.db",
+                 "SELECT (SELECT count(*) FROM runs) || (SELECT count(*) FROM tags) || (SELECT count(*) FROM notes) || "
+                 "(SELECT count(*) FROM events) || (SELECT count(DISTINCT run) FROM run_measures) || "
+                 "(SELECT count(DISTINCT run) FROM run_parameters)",
+                 "100011"));
     ledger_close(l);
 }
 
@@ -214,11 +234,14 @@ static void names_are_resolved(void) {
     sql_do("resolve.db", "UPDATE runs SET id = '20260101-000000-ab12' WHERE run = 1");
     sql_do("resolve.db", "UPDATE runs SET id = '20260102-000000-cd12' WHERE run = 2");
     sql_do("resolve.db", "UPDATE runs SET id = '20260102-000001-0021', output = '/there' WHERE run = 3");
-    CHECK(ledger_resolve(l, "20260102-000000-cd12", id, NULL, 0, &r) == STATUS_OK && strcmp(id, "20260102-000000-cd12") == 0);
+    CHECK(ledger_resolve(l, "20260102-000000-cd12", id, NULL, 0, &r) == STATUS_OK &&
+          strcmp(id, "20260102-000000-cd12") == 0);
     CHECK(ledger_resolve(l, "last", id, output, sizeof output, &r) == STATUS_OK);
     CHECK(strcmp(id, "20260102-000001-0021") == 0 && strcmp(output, "/there") == 0);
-    CHECK(ledger_resolve(l, "20260101", id, output, sizeof output, &r) == STATUS_OK && strcmp(id, "20260101-000000-ab12") == 0);
-    CHECK(ledger_resolve(l, "cd12", id, output, sizeof output, &r) == STATUS_OK && strcmp(id, "20260102-000000-cd12") == 0);
+    CHECK(ledger_resolve(l, "20260101", id, output, sizeof output, &r) == STATUS_OK &&
+          strcmp(id, "20260101-000000-ab12") == 0);
+    CHECK(ledger_resolve(l, "cd12", id, output, sizeof output, &r) == STATUS_OK &&
+          strcmp(id, "20260102-000000-cd12") == 0);
     CHECK(ledger_resolve(l, "20260102", id, output, sizeof output, &r) == STATUS_INPUT);
     CHECK(strstr(r.found, "fits 2 runs") && strcmp(r.nearest, "20260102-000001-0021") == 0);
     CHECK(ledger_resolve(l, "12", id, output, sizeof output, &r) == STATUS_INPUT && strstr(r.found, "fits 2 runs"));
@@ -255,12 +278,17 @@ static void a_vanished_process_leaves_no_running_run(void) {
     CHECK(sql_is(name, "SELECT status FROM runs", "running"));
     bury(name);
     CHECK(sql_is(name, "SELECT status FROM runs WHERE variant = 'vanished'", "dead"));
-    CHECK(sql_is(name, "SELECT frames || (message LIKE 'its process (% on %) ended without a word') FROM runs_view "
-                       "WHERE variant = 'vanished'", "21"));
+    CHECK(sql_is(name,
+                 "SELECT frames || (message LIKE 'its process (% on %) ended without a word') FROM runs_view "
+                 "WHERE variant = 'vanished'",
+                 "21"));
     ledger *l = open_ledger(name);
     snprintf(id, sizeof id, "%s", sql_text(name, "SELECT id FROM runs WHERE variant = 'vanished'"));
     CHECK(ledger_reopen(l, id, &r) == STATUS_OK); /* it may be resumed */
-    CHECK(sql_is(name, "SELECT status || (pid = (SELECT pid FROM runs WHERE variant = 'writer')) FROM runs WHERE variant = 'vanished'", "running1"));
+    CHECK(sql_is(
+        name,
+        "SELECT status || (pid = (SELECT pid FROM runs WHERE variant = 'writer')) FROM runs WHERE variant = 'vanished'",
+        "running1"));
     CHECK(ledger_finish(l, id, "done", 4, 40, 1, NULL, NULL, &r) == STATUS_OK);
     ledger_close(l);
     CHECK(sql_is(name, "SELECT status || frames FROM runs WHERE variant = 'vanished'", "done4"));
@@ -283,11 +311,11 @@ static bool looks_dead(const char *change) {
 static void only_the_certainly_gone_are_dead(void) {
     CHECK(!looks_dead("message = NULL"));
     CHECK(looks_dead("pid = 999999999"));
-    CHECK(looks_dead("pid_started = pid_started - 1"));                     /* the pid was used again */
-    CHECK(looks_dead("boot = 'another boot'"));                             /* the machine was started anew */
-    CHECK(!looks_dead("boot = '', pid_started = 0"));                       /* unknown: it may live */
-    CHECK(!looks_dead("host = 'elsewhere', pid = 999999999"));              /* cannot be seen from here */
-    CHECK(!looks_dead("pid_space = 'pid:[1]', pid = 999999999"));           /* nor from this container */
+    CHECK(looks_dead("pid_started = pid_started - 1"));           /* the pid was used again */
+    CHECK(looks_dead("boot = 'another boot'"));                   /* the machine was started anew */
+    CHECK(!looks_dead("boot = '', pid_started = 0"));             /* unknown: it may live */
+    CHECK(!looks_dead("host = 'elsewhere', pid = 999999999"));    /* cannot be seen from here */
+    CHECK(!looks_dead("pid_space = 'pid:[1]', pid = 999999999")); /* nor from this container */
     CHECK(looks_dead("host = (SELECT host FROM runs LIMIT 1), pid = 999999999"));
 }
 
@@ -336,7 +364,8 @@ static void a_run_in_other_hands_is_left_alone(void) {
     if (pid == 0) hold_a_run(&pipes);
     CHECK(read(pipes.ready[0], &byte, 1) == 1);
     bury("held.db");
-    snprintf(id, sizeof id, "%s", sql_text("held.db", "SELECT id FROM runs WHERE variant = 'held' AND status = 'running'"));
+    snprintf(id, sizeof id, "%s",
+             sql_text("held.db", "SELECT id FROM runs WHERE variant = 'held' AND status = 'running'"));
     CHECK(id[0] != '\0');
     ledger *l = open_ledger("held.db");
     CHECK(ledger_reopen(l, id, &r) == STATUS_INPUT && strstr(r.found, "still writing"));
@@ -443,8 +472,10 @@ static void kill_leaves_a_sound_ledger(void) {
         waitpid(pid, NULL, 0);
         CHECK(sql_is("killed.db", "PRAGMA integrity_check", "ok"));
         /* Transactions are whole: every frame has both of its measures. */
-        CHECK(sql_is("killed.db", "SELECT count(*) FROM frames WHERE 2 <> (SELECT count(*) FROM run_measures AS m "
-                                  "WHERE m.run = frames.run AND m.frame = frames.frame)", "0"));
+        CHECK(sql_is("killed.db",
+                     "SELECT count(*) FROM frames WHERE 2 <> (SELECT count(*) FROM run_measures AS m "
+                     "WHERE m.run = frames.run AND m.frame = frames.frame)",
+                     "0"));
     }
     bury("killed.db");
     CHECK(sql_is("killed.db", "SELECT count(*) FROM runs WHERE status = 'running'", "0"));

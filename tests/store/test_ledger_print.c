@@ -1,4 +1,5 @@
-/* What the ledger prints: lists, one run, two runs beside each other, queries; for people and as JSON (read back with SQLite). */
+/* What the ledger prints: lists, one run, two runs beside each other, queries; for people and as JSON (read back with
+ * SQLite). */
 #include "base/memory.h"
 #include "check.h"
 #include "ledger_scratch.h"
@@ -25,7 +26,9 @@ static const char *json_at(const char *json, const char *path) {
     sqlite3 *database;
     sqlite3_stmt *statement;
     if (sqlite3_open(":memory:", &database)) abort();
-    if (sqlite3_prepare_v2(database, "SELECT iif(json_valid(?1), json_extract(?1, ?2), '(no JSON)')", -1, &statement, NULL)) abort();
+    if (sqlite3_prepare_v2(database, "SELECT iif(json_valid(?1), json_extract(?1, ?2), '(no JSON)')", -1, &statement,
+                           NULL))
+        abort();
     sqlite3_bind_text(statement, 1, json, -1, SQLITE_STATIC);
     sqlite3_bind_text(statement, 2, path, -1, SQLITE_STATIC);
     sqlite3_step(statement);
@@ -89,7 +92,8 @@ static void a_list_for_people(void) {
     PRINT(p, ledger_print_list(l, out, false, "status = 'failed' OR particles < 10 -- and a comment", 0, &r));
     CHECK(p.s == STATUS_OK && has(p.text, ids[1]) && !strstr(p.text, ids[0]));
     free(p.text);
-    PRINT(p, ledger_print_list(l, out, false, "parameters ->> 'eta' > 0.2 AND measures ->> 'broken_fraction' > 0.1", 0, &r));
+    PRINT(p, ledger_print_list(l, out, false, "parameters ->> 'eta' > 0.2 AND measures ->> 'broken_fraction' > 0.1", 0,
+                               &r));
     CHECK(p.s == STATUS_OK && has(p.text, ids[0]) && !strstr(p.text, ids[1]) && !strstr(p.text, ids[2]));
     free(p.text);
     PRINT(p, ledger_print_list(l, out, false, NULL, 1, &r));
@@ -111,7 +115,8 @@ static void a_list_fits_the_terminal(void) {
     CHECK(ledger_tag(l, id, "a tag that is long as well but good", true, &r) == STATUS_OK);
     sql_do("narrow.db", "UPDATE runs SET frames_wanted = 12345, wall_seconds = 86400, particles = 1234567");
     PRINT(p, ledger_print_list(l, out, false, NULL, 0, &r));
-    CHECK(widest(p.text) <= 80 && has(p.text, "…") && has(p.text, "1.235M") && has(p.text, "24:00:00") && has(p.text, id));
+    CHECK(widest(p.text) <= 80 && has(p.text, "…") && has(p.text, "1.235M") && has(p.text, "24:00:00") &&
+          has(p.text, id));
     free(p.text);
     setenv("COLUMNS", "200", 1);
     PRINT(p, ledger_print_list(l, out, false, NULL, 0, &r));
@@ -130,7 +135,8 @@ static void a_list_for_programs(void) {
     CHECK(p.s == STATUS_OK && strchr(p.text, '\n') == p.text + p.size - 1);
     CHECK(json_is(p.text, "$.runs[2].run_id", ids[0]) && json_is(p.text, "$.runs[0].status", "running"));
     CHECK(json_is(p.text, "$.runs[2].tags[0]", "figure 2") && json_is(p.text, "$.runs[2].effects[1]", "fibres"));
-    CHECK(json_is(p.text, "$.runs[2].parameters.eta", "0.45") && json_is(p.text, "$.runs[2].parameters.kernel", "cubic"));
+    CHECK(json_is(p.text, "$.runs[2].parameters.eta", "0.45") &&
+          json_is(p.text, "$.runs[2].parameters.kernel", "cubic"));
     CHECK(json_is(p.text, "$.runs[2].measures.kinetic", "6"));
     CHECK(has(p.text, "0.3333333333333333")); /* all digits */
     CHECK(json_is(p.text, "$.runs[2].summary.energy.kinetic", "3.5") && json_is(p.text, "$.runs[0].summary", ""));
@@ -168,8 +174,10 @@ static void one_run_for_people(void) {
     printed p;
     ledger *l = three_runs("show.db", ids);
     PRINT(p, ledger_print_show(l, out, false, ids[0], &r));
-    CHECK(p.s == STATUS_OK && has(p.text, ids[0]) && has(p.text, "elasticity,fibres,damage") && has(p.text, "/data/runs/x"));
-    CHECK(has(p.text, "\nParameters\n") && has(p.text, "eta") && has(p.text, "0.45") && has(p.text, "set") && has(p.text, "cubic"));
+    CHECK(p.s == STATUS_OK && has(p.text, ids[0]) && has(p.text, "elasticity,fibres,damage") &&
+          has(p.text, "/data/runs/x"));
+    CHECK(has(p.text, "\nParameters\n") && has(p.text, "eta") && has(p.text, "0.45") && has(p.text, "set") &&
+          has(p.text, "cubic"));
     CHECK(has(p.text, "\nMeasures of the last frame\n") && has(p.text, "0.333333") && has(p.text, "broken_fraction"));
     CHECK(has(p.text, "\nEvents\n") && has(p.text, "first_crack") && has(p.text, "at x = 0.1"));
     CHECK(has(p.text, "\nNotes\n") && has(p.text, "tears too late") && has(p.text, "figure 2"));
@@ -194,9 +202,12 @@ static void one_run_for_programs(void) {
     ledger *l = three_runs("show_json.db", ids);
     PRINT(p, ledger_print_show(l, out, true, ids[0], &r));
     CHECK(p.s == STATUS_OK && json_is(p.text, "$.run_id", ids[0]) && json_is(p.text, "$.seed", "7"));
-    CHECK(json_is(p.text, "$.parameter_details[0].name", "eta") && json_is(p.text, "$.parameter_details[0].from_set", "1"));
-    CHECK(json_is(p.text, "$.parameter_details[0].unit", "1") && json_is(p.text, "$.parameter_details[2].value", "cubic"));
-    CHECK(json_is(p.text, "$.history[4].frame", "4") && json_is(p.text, "$.history[4].measures.broken_fraction", "0.18"));
+    CHECK(json_is(p.text, "$.parameter_details[0].name", "eta") &&
+          json_is(p.text, "$.parameter_details[0].from_set", "1"));
+    CHECK(json_is(p.text, "$.parameter_details[0].unit", "1") &&
+          json_is(p.text, "$.parameter_details[2].value", "cubic"));
+    CHECK(json_is(p.text, "$.history[4].frame", "4") &&
+          json_is(p.text, "$.history[4].measures.broken_fraction", "0.18"));
     CHECK(json_is(p.text, "$.history[5]", "") && json_is(p.text, "$.history[1].steps", "10"));
     CHECK(json_is(p.text, "$.events[0].kind", "first_crack") && json_is(p.text, "$.notes[0].text", "tears\ntoo late"));
     free(p.text);
@@ -241,7 +252,8 @@ static void two_runs_for_people(void) {
     CHECK(p.s == STATUS_OK && widest(p.text) <= 80);
     char *parameters = strstr(p.text, "Parameters\n"), *measures = strstr(p.text, "Measures of the last frame\n");
     CHECK(parameters && measures && parameters < measures);
-    CHECK(has(p.text, "eta") && has(p.text, "0.45") && has(p.text, "0.3") && !strstr(p.text, "gamma") && !strstr(p.text, "kernel"));
+    CHECK(has(p.text, "eta") && has(p.text, "0.45") && has(p.text, "0.3") && !strstr(p.text, "gamma") &&
+          !strstr(p.text, "kernel"));
     CHECK(has(p.text, "isotropic") && has(p.text, "-50 %") && has(p.text, "-66.7 %")); /* 6 → 3, .18 → .06 */
     CHECK(!strstr(p.text, "steady") && !strstr(p.text, "started") && !strstr(p.text, "wall"));
     free(p.text);
@@ -267,7 +279,8 @@ static void small_and_one_sided_differences(void) {
     free(p.text);
     PRINT(p, ledger_print_diff(l, out, true, a, b, &r));
     CHECK(json_is(p.text, "$.a", a) && json_is(p.text, "$.b", b));
-    CHECK(json_is(p.text, "$.parameters[0].name", "alpha") && json_is(p.text, "$.parameters[0].a", "") && json_is(p.text, "$.parameters[0].unit", "rad"));
+    CHECK(json_is(p.text, "$.parameters[0].name", "alpha") && json_is(p.text, "$.parameters[0].a", "") &&
+          json_is(p.text, "$.parameters[0].unit", "rad"));
     CHECK(has(p.text, "0.25000000000000006") && json_is(p.text, "$.parameters[1].name", "eta"));
     CHECK(json_is(p.text, "$.run", "[]") && json_is(p.text, "$.measures[0].name", "broken_fraction"));
     CHECK(strtod(json_at(p.text, "$.measures[0].relative"), NULL) > 0);
@@ -282,19 +295,34 @@ static void queries_only_read(void) {
     report r;
     printed p;
     ledger *l = three_runs("sql.db", ids);
-    static const char *const bad[] = {"DELETE FROM runs", "SELECT 1; SELECT 2", "", "SELEC 1", "PRAGMA user_version = 7", "BEGIN",
-                                      "DROP VIEW runs_view", "WITH x AS (SELECT 1) DELETE FROM runs", "DELETE FROM runs RETURNING id"};
+    static const char *const bad[] = {"DELETE FROM runs",
+                                      "SELECT 1; SELECT 2",
+                                      "",
+                                      "SELEC 1",
+                                      "PRAGMA user_version = 7",
+                                      "BEGIN",
+                                      "DROP VIEW runs_view",
+                                      "WITH x AS (SELECT 1) DELETE FROM runs",
+                                      "DELETE FROM runs RETURNING id"};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         PRINT(p, ledger_print_sql(l, out, false, bad[i], NULL, 0, &r));
         CHECK(p.s == STATUS_INPUT);
         free(p.text);
     }
     CHECK(sql_is("sql.db", "SELECT count(*) FROM runs", "3") && sql_is("sql.db", "PRAGMA user_version", "2"));
-    PRINT(p, ledger_print_sql(l, out, false, "SELECT id, particles, NULL AS none FROM runs ORDER BY run; ", NULL, 0, &r));
-    CHECK(p.s == STATUS_OK && has(p.text, "particles") && has(p.text, "none") && has(p.text, "50000") && has(p.text, ids[2]));
+    PRINT(p,
+          ledger_print_sql(l, out, false, "SELECT id, particles, NULL AS none FROM runs ORDER BY run; ", NULL, 0, &r));
+    CHECK(p.s == STATUS_OK && has(p.text, "particles") && has(p.text, "none") && has(p.text, "50000") &&
+          has(p.text, ids[2]));
     free(p.text);
-    PRINT(p, ledger_print_sql(l, out, true, "SELECT 9007199254740993 AS big, 0.1 AS x, 'a\"' AS t, NULL AS n", NULL, 0, &r));
-    CHECK(p.s == STATUS_OK && strcmp(p.text, "{\"columns\": [\"big\", \"x\", \"t\", \"n\"], \"rows\": [[9007199254740993, 0.1, \"a\\\"\", null]]}\n") == 0);
+    PRINT(p, ledger_print_sql(l, out, true, "SELECT 9007199254740993 AS big, 0.1 AS x, 'a\"' AS t, NULL AS n", NULL, 0,
+                              &r));
+    CHECK(
+        p.s == STATUS_OK &&
+        strcmp(
+            p.text,
+            "{\"columns\": [\"big\", \"x\", \"t\", \"n\"], \"rows\": [[9007199254740993, 0.1, \"a\\\"\", null]]}\n") ==
+            0);
     free(p.text);
     char id[LEDGER_ID];
     write_run(l, "after", 1, 0, "done", id); /* the ledger can be written again */
@@ -318,7 +346,8 @@ static void rows_can_be_read_one_by_one(void) {
     CHECK(ledger_each_row(l, sql, arguments, 1, count_row, &rows, &r) == STATUS_INTERRUPTED && rows == 2);
     CHECK(ledger_each_row(l, sql, wrong, 1, count_row, &rows, &r) == STATUS_INPUT && strcmp(r.nearest, "least") == 0);
     CHECK(ledger_each_row(l, sql, bare, 1, count_row, &rows, &r) == STATUS_INPUT);
-    CHECK(ledger_each_row(l, sql, NULL, 0, count_row, &rows, &r) == STATUS_OK && rows == 2); /* NULL compares with nothing */
+    CHECK(ledger_each_row(l, sql, NULL, 0, count_row, &rows, &r) == STATUS_OK &&
+          rows == 2); /* NULL compares with nothing */
     ledger_close(l);
 }
 
@@ -344,7 +373,8 @@ static void ready_made_queries_run(void) {
     const char *const best[] = {"measure=kinetic", "most=1", "scene=TUBE"};
     CHECK(ledger_query("best", &sql, &r) == STATUS_OK);
     PRINT(p, ledger_print_sql(l, out, true, sql, best, 3, &r));
-    CHECK(json_is(p.text, "$.rows[0][0]", ids[0]) && json_is(p.text, "$.rows[1][0]", ids[2]) && json_is(p.text, "$.rows[2]", ""));
+    CHECK(json_is(p.text, "$.rows[0][0]", ids[0]) && json_is(p.text, "$.rows[1][0]", ids[2]) &&
+          json_is(p.text, "$.rows[2]", ""));
     free(p.text);
     const char *const effect[] = {"parameter=eta"};
     CHECK(ledger_query("effect_of", &sql, &r) == STATUS_OK);

@@ -1,5 +1,5 @@
-/* What happens to a run's folder when the disk is full, the folder cannot be written, the process is killed or a file is damaged:
- * whole frames stay whole, and the caller is told. */
+/* What happens to a run's folder when the disk is full, the folder cannot be written, the process is killed or a file
+ * is damaged: whole frames stay whole, and the caller is told. */
 #include "base/memory.h"
 #include "base/random.h"
 #include "check.h"
@@ -88,7 +88,8 @@ static int write_on_small_disk(void *context) {
     char *disk = context;
     report r;
     if (mount("tmpfs", disk, "tmpfs", 0, "size=1500k") != 0) return 77;
-    int code = run_folder_create(in_scratch("disk/run"), false, &r) ? 1 : write_until_full((char *)in_scratch("disk/run"));
+    int code =
+        run_folder_create(in_scratch("disk/run"), false, &r) ? 1 : write_until_full((char *)in_scratch("disk/run"));
     umount(disk);
     return code;
 }
@@ -133,7 +134,8 @@ static int write_without_right(void *context) {
     if (frame_write(run, &header, &list, 1, &r) != STATUS_SYSTEM || !strstr(r.message, strerror(EACCES))) return 1;
     if (!strstr(r.file, "000001.hdf")) return 2;
     if (checkpoint_write(run, &header, &list, &r) != STATUS_SYSTEM || !strstr(r.message, strerror(EACCES))) return 3;
-    if (run_folder_create(in_scratch("locked/new"), false, &r) != STATUS_SYSTEM || !strstr(r.file, "locked/new")) return 4;
+    if (run_folder_create(in_scratch("locked/new"), false, &r) != STATUS_SYSTEM || !strstr(r.file, "locked/new"))
+        return 4;
     if (frame_truncate(run, -1, &r) != STATUS_SYSTEM) return 5;
     return whole_frames(run, 10, 10) == 1 ? 0 : 6;
 }
@@ -187,7 +189,8 @@ static void kill_a_writer(int round) {
     report warning, r;
     int64_t frame = -1;
     status s = checkpoint_read_last(run, &back, &frame, &warning, &r);
-    CHECK(last < 1 || (s == STATUS_OK && warning.code == STATUS_OK && frame >= last - 1)); /* whole, and not left behind */
+    CHECK(last < 1 ||
+          (s == STATUS_OK && warning.code == STATUS_OK && frame >= last - 1)); /* whole, and not left behind */
     if (!s) record_clear(&back);
     CHECK(run_folder_create(run, true, &r) == STATUS_OK); /* and resuming tidies up */
     CHECK(count_files(run, ".tmp") == 0 && count_files(in_scratch("%s/frames", name), ".tmp") == 0);

@@ -39,7 +39,8 @@ static inline void files_close(void) {
     if (system(command) != 0) exit(1);
 }
 
-/* Loads `text` as a scene with settings given as "key=value" pairs, NULL-terminated. NULL on failure, with `reports`. */
+/* Loads `text` as a scene with settings given as "key=value" pairs, NULL-terminated. NULL on failure, with `reports`.
+ */
 static inline script *load_with(const char *text, const script_options *base, const char *const *pairs) {
     static char keys[16][128];
     script_setting settings[16];

@@ -33,14 +33,16 @@ static void strings_are_escaped(void) {
 #define BAD "\xef\xbf\xbd"
 
 static void bad_utf8_is_replaced(void) {
-    CHECK(string_becomes("a\xff" "b", "\"a" BAD "b\""));
-    CHECK(string_becomes("\xc3", "\"" BAD "\""));                          /* cut off */
-    CHECK(string_becomes("\xe2\x82", "\"" BAD BAD "\""));                  /* cut off after two of three */
-    CHECK(string_becomes("\xc0\xaf", "\"" BAD BAD "\""));                  /* overlong '/' */
-    CHECK(string_becomes("\xe0\x80\xaf", "\"" BAD BAD BAD "\""));          /* overlong */
-    CHECK(string_becomes("\xed\xa0\x80", "\"" BAD BAD BAD "\""));          /* surrogate */
+    CHECK(string_becomes("a\xff"
+                         "b",
+                         "\"a" BAD "b\""));
+    CHECK(string_becomes("\xc3", "\"" BAD "\""));                         /* cut off */
+    CHECK(string_becomes("\xe2\x82", "\"" BAD BAD "\""));                 /* cut off after two of three */
+    CHECK(string_becomes("\xc0\xaf", "\"" BAD BAD "\""));                 /* overlong '/' */
+    CHECK(string_becomes("\xe0\x80\xaf", "\"" BAD BAD BAD "\""));         /* overlong */
+    CHECK(string_becomes("\xed\xa0\x80", "\"" BAD BAD BAD "\""));         /* surrogate */
     CHECK(string_becomes("\xf4\x90\x80\x80", "\"" BAD BAD BAD BAD "\"")); /* past U+10FFFF */
-    CHECK(string_becomes("\xf4\x8f\xbf\xbf", "\"\xf4\x8f\xbf\xbf\""));     /* U+10FFFF itself */
+    CHECK(string_becomes("\xf4\x8f\xbf\xbf", "\"\xf4\x8f\xbf\xbf\""));    /* U+10FFFF itself */
 }
 
 static void numbers_are_short(void) {
@@ -48,8 +50,12 @@ static void numbers_are_short(void) {
     const struct {
         double value;
         const char *text;
-    } cases[] = {{0.1, "0.1"},       {0.1 + 0.2, "0.30000000000000004"}, {1.0 / 3.0, "0.3333333333333333"},
-                 {3, "3"},           {-0.0, "-0"},                       {1e300, "1e+300"},
+    } cases[] = {{0.1, "0.1"},
+                 {0.1 + 0.2, "0.30000000000000004"},
+                 {1.0 / 3.0, "0.3333333333333333"},
+                 {3, "3"},
+                 {-0.0, "-0"},
+                 {1e300, "1e+300"},
                  {-1.5e-7, "-1.5e-07"}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         json_format_number(cases[i].value, text);
@@ -118,8 +124,9 @@ static void structure_is_right(void) {
     json_begin(&w, 0);
     write_sample(&w);
     CHECK(json_finish(&w, &r) == STATUS_OK);
-    CHECK(strcmp(w.text, "{\"name\": \"a\", \"list\": [-9223372036854775808, 0.25, true, null], \"empty\": {}, \"raw\": [1,2], "
-                         "\"none\": null, \"i\": 7, \"b\": false, \"n\": null}") == 0);
+    CHECK(strcmp(w.text,
+                 "{\"name\": \"a\", \"list\": [-9223372036854775808, 0.25, true, null], \"empty\": {}, \"raw\": [1,2], "
+                 "\"none\": null, \"i\": 7, \"b\": false, \"n\": null}") == 0);
     json_free(&w);
 
     json_begin(&w, 2);

@@ -50,7 +50,7 @@ static void test_tube_pull(void) {
     CHECK(sc->body_count == 1 && sc->grip_count == 2 && sc->material_count == 1 && sc->collider_count == 0);
     CHECK(sc->materials[0].density == 500 && strcmp(sc->materials[0].name, "tube") == 0);
     CHECK(knob_value(s, 0, "elastic", "E") == 4e4 && knob_value(s, 0, "fibres", "gamma") == 10);
-    CHECK(knob_value(s, 0, "elastic", "lame") == 1); /* paper */
+    CHECK(knob_value(s, 0, "elastic", "lame") == 1);                 /* paper */
     CHECK_NEAR(knob_value(s, 0, "damage", "sigma_c"), 31957.6, 0.1); /* FACTS.md: break_stretch .20 */
     CHECK(sc->effects[effect_index("gravity")].on && sc->effects[effect_index("gravity")].value[0][1] == -1);
     CHECK(sc->grips[0].velocity.constant[0] == -0.1 && sc->grips[1].velocity.constant[0] == 0.1);
@@ -73,9 +73,12 @@ static void test_variants(void) {
         bool damage, fibres;
         double alpha;
     } rows[] = {
-        {"tube_pull.lua", "full", true, true, -1},         {"tube_pull.lua", "isotropic", true, false, 0},
-        {"tube_pull.lua", "damage_only", true, false, -1}, {"tube_pull.lua", "elastic_only", false, true, 0},
-        {"tube_compress.lua", "full", true, true, -1},     {"tube_compress.lua", "isotropic", true, false, 0},
+        {"tube_pull.lua", "full", true, true, -1},
+        {"tube_pull.lua", "isotropic", true, false, 0},
+        {"tube_pull.lua", "damage_only", true, false, -1},
+        {"tube_pull.lua", "elastic_only", false, true, 0},
+        {"tube_compress.lua", "full", true, true, -1},
+        {"tube_compress.lua", "isotropic", true, false, 0},
         {"tube_compress.lua", "elastic_only", false, true, 0},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
@@ -143,11 +146,12 @@ static void test_parameters_refused(void) {
     refused(params_scene, SET("pul=1"), "did you mean 'pull'");
     refused(params_scene, SET("particels=1"), "did you mean 'particles'");
     refused(params_scene, SET("particles=1.5"), "whole number");
-    refused(HEAD "local p = s.params { a = { 5, max = 2 } } return s.scene { particles = 1, solids = { " BALL " } }", NULL,
-            "of at most 2");
+    refused(HEAD "local p = s.params { a = { 5, max = 2 } } return s.scene { particles = 1, solids = { " BALL " } }",
+            NULL, "of at most 2");
     refused(HEAD "local p = s.params { a = { 5, unti = 'm' } } return s.scene { particles = 1, solids = { " BALL " } }",
             NULL, "did you mean 'unit'");
-    refused(HEAD "local p = s.params { a = {} } return s.scene { particles = 1, solids = { " BALL " } }", NULL, "s.choice");
+    refused(HEAD "local p = s.params { a = {} } return s.scene { particles = 1, solids = { " BALL " } }", NULL,
+            "s.choice");
     refused(HEAD "local p = s.params { a = 1 } p.a = 2 return s.scene { particles = 1, solids = { " BALL " } }", NULL,
             "read-only");
 }
@@ -158,13 +162,15 @@ static void test_standard_names(void) {
                                  "kernel=cubic", "transfer=flip"));
     if (!s) return;
     const scene *sc = script_scene(s);
-    CHECK(sc->particles == 2000 && sc->duration == 5 && sc->dx == 0 && sc->dt == 0.25 && sc->seed == 7 && sc->fps == 10);
+    CHECK(sc->particles == 2000 && sc->duration == 5 && sc->dx == 0 && sc->dt == 0.25 && sc->seed == 7 &&
+          sc->fps == 10);
     CHECK(sc->kernel == KERNEL_CUBIC && sc->transfer == TRANSFER_FLIP && sc->cfl == 0.3);
     CHECK(parameter_named(s, "particles")->from_set && strcmp(parameter_named(s, "dx")->text, "auto") == 0);
     script_close(s);
     /* Declared and used in an expression: the scene's own word stands. */
     s = loaded(HEAD "local p = s.params { particles = 10 }\n"
-                    "return s.scene { particles = p.particles * 2, solids = { " BALL " } }", SET("particles=50"));
+                    "return s.scene { particles = p.particles * 2, solids = { " BALL " } }",
+               SET("particles=50"));
     if (s) CHECK(script_scene(s)->particles == 100);
     script_close(s);
 }
@@ -177,7 +183,8 @@ static const char two_materials[] =
          "      elastic = { E = 2 } } } } }";
 
 static void test_knobs(void) {
-    script *s = loaded(two_materials, SET("eta=0.7", "peel.elastic.E=5", "pulp.nu=0.1", "gravity=0,0,-3", "peel.density=4"));
+    script *s =
+        loaded(two_materials, SET("eta=0.7", "peel.elastic.E=5", "pulp.nu=0.1", "gravity=0,0,-3", "peel.density=4"));
     if (!s) return;
     CHECK(knob_value(s, 0, "damage", "eta") == 0.7 && knob_value(s, 0, "elastic", "E") == 5);
     CHECK(knob_value(s, 1, "elastic", "E") == 2 && knob_value(s, 1, "elastic", "nu") == 0.1);
@@ -202,7 +209,8 @@ static void test_twins(void) {
     script *s = loaded(two_materials, SET("sigma_c=3"));
     if (!s) return;
     CHECK(knob_value(s, 0, "damage", "sigma_c") == 3);
-    CHECK(!parameter_named(s, "peel.damage.break_stretch")->from_set && parameter_named(s, "peel.damage.sigma_c")->from_set);
+    CHECK(!parameter_named(s, "peel.damage.break_stretch")->from_set &&
+          parameter_named(s, "peel.damage.sigma_c")->from_set);
     script_close(s);
     s = loaded(two_materials, SET("sigma_c=3", "break_stretch=0.5"));
     if (!s) return;
@@ -213,14 +221,19 @@ static void test_twins(void) {
 /* ---- recipes ----------------------------------------------------------------------------------------------------- */
 
 static void test_recipes(void) {
-    files_write("recipes/rope.lua", "return { density = 3, elastic = { E = 7, nu = 0.2 }, damage = { break_stretch = 0.1 },\n"
-                                    "  fibres = { gamma = 2 } }");
-    files_write("stuff/gum.lua", "local s = require 'sunder'\n"
-                                 "return s.recipe('rope', { elastic = { E = 1 }, damage = { sigma_c = 4 }, fibres = false })");
-    script *s = loaded(HEAD "local along = s.fibres.direction { 1, 0, 0 }\n"
-        "local function ball(x, m) return { shape = s.sphere { radius = 1, center = { x, 0, 0 } }, fibres = along, material = m } end\n"
-        "return s.scene { particles = 1, solids = { ball(0, 'rope'), ball(3, 'rope'), ball(6, s.recipe 'rope'),\n"
-        "  ball(9, s.recipe('rope', { elastic = { nu = 0.4 }, damage = { sigma_c = 2 } })), ball(12, s.recipe 'stuff/gum.lua') } }",
+    files_write("recipes/rope.lua",
+                "return { density = 3, elastic = { E = 7, nu = 0.2 }, damage = { break_stretch = 0.1 },\n"
+                "  fibres = { gamma = 2 } }");
+    files_write("stuff/gum.lua",
+                "local s = require 'sunder'\n"
+                "return s.recipe('rope', { elastic = { E = 1 }, damage = { sigma_c = 4 }, fibres = false })");
+    script *s = loaded(
+        HEAD "local along = s.fibres.direction { 1, 0, 0 }\n"
+             "local function ball(x, m) return { shape = s.sphere { radius = 1, center = { x, 0, 0 } }, fibres = "
+             "along, material = m } end\n"
+             "return s.scene { particles = 1, solids = { ball(0, 'rope'), ball(3, 'rope'), ball(6, s.recipe 'rope'),\n"
+             "  ball(9, s.recipe('rope', { elastic = { nu = 0.4 }, damage = { sigma_c = 2 } })), ball(12, s.recipe "
+             "'stuff/gum.lua') } }",
         NULL);
     if (!s) return;
     const scene *sc = script_scene(s);
@@ -234,15 +247,31 @@ static void test_recipes(void) {
     CHECK(!effect_is_on(s, 3, "fibres") && effect_is_on(s, 0, "fibres"));
     CHECK(script_source_count(s) == 3 && strcmp(script_source_at(s, 2).name, "stuff/gum.lua") == 0);
     script_close(s);
-    refused(HEAD "return s.scene { particles = 1, solids = { { shape = s.sphere { radius = 1 }, material = 'ropee' } } }",
+    refused(HEAD
+            "return s.scene { particles = 1, solids = { { shape = s.sphere { radius = 1 }, material = 'ropee' } } }",
             NULL, "did you mean 'rope'");
+}
+
+static void test_recipe_folder(void) {
+    char text[256];
+    files_write("elsewhere/felt.lua", "return { density = 11, elastic = { E = 1 } }");
+    snprintf(text, sizeof text, "%s/elsewhere", folder);
+    setenv("SUNDER_RECIPES", text, 1);
+    script *s = loaded(HEAD "return s.scene { particles = 1, solids = { { shape = s.sphere { radius = 1 },\n"
+                            "  material = 'felt' } } }",
+                       NULL);
+    CHECK(s && script_scene(s)->materials[0].density == 11);
+    CHECK(s && strcmp(script_source_at(s, 1).name, "recipes/felt.lua") == 0);
+    script_close(s);
+    unsetenv("SUNDER_RECIPES");
 }
 
 static void test_recipe_option(void) {
     script_options o = script_options_default();
     o.recipe = "tube"; /* found in the source tree */
     script *s = load_with(HEAD "return s.scene { particles = 1, solids = { { shape = s.sphere { radius = 1 },\n"
-                               "  fibres = s.fibres.direction { 1, 0, 0 }, material = { nonsense = 1 } } } }", &o, SET("eta=0.9"));
+                               "  fibres = s.fibres.direction { 1, 0, 0 }, material = { nonsense = 1 } } } }",
+                          &o, SET("eta=0.9"));
     CHECK(s && script_scene(s)->materials[0].density == 500 && knob_value(s, 0, "damage", "eta") == 0.9);
     script_close(s);
     o.recipe = "tubbe";
@@ -254,8 +283,8 @@ static void test_recipe_option(void) {
 
 static void check_distance(const char *expression, double x, double y, double z, double expected) {
     char text[1024];
-    snprintf(text, sizeof text, HEAD "return s.scene { particles = 1, solids = { { shape = %s, material = " MATTER " } } }",
-             expression);
+    snprintf(text, sizeof text,
+             HEAD "return s.scene { particles = 1, solids = { { shape = %s, material = " MATTER " } } }", expression);
     script *s = loaded(text, NULL);
     if (!s) return;
     const double point[3] = {x, y, z};
@@ -276,18 +305,22 @@ static void test_shapes(void) {
     check_distance("s.union { s.sphere { radius = 1 }, s.sphere { radius = 2 } }", 3, 0, 0, 1);
     check_distance("s.sphere { radius = 2 } * s.half_space { normal = 'x' }", 1, 0, 0, 1);
     check_distance("s.sphere { radius = 2 } - s.sphere { radius = 1 }", 0, 0.25, 0, 0.75);
-    check_distance("s.difference(s.sphere { radius = 3 }, s.sphere { radius = 1 }, s.half_space { normal = 'y' })", 0, -1, 0, 1);
+    check_distance("s.difference(s.sphere { radius = 3 }, s.sphere { radius = 1 }, s.half_space { normal = 'y' })", 0,
+                   -1, 0, 1);
     check_distance("s.sphere { radius = 1 }:translate { 0, 5, 0 }", 0, 7, 0, 1);
     check_distance("s.translate(s.sphere { radius = 1 }, { 0, 5, 0 }):scale(2)", 0, 13, 0, 1);
     /* A quarter turn about z takes +x to +y. */
     check_distance("s.box { min = { 0, -1, -1 }, max = { 4, 1, 1 } }:rotate { axis = 'z', angle = 90 }", 0, 6, 0, 2);
     check_distance("s.rotate(s.sphere { radius = 1 }, { axis = 'z', angle = 90, center = { 2, 0, 0 } })", 2, -4, 0, 1);
     refused(HEAD "return s.scene { solids = { { shape = s.sphere { radius = 1 } + 3 } } }", NULL, "expected a shape");
-    refused(HEAD "return s.scene { solids = { { shape = s.sphere { radius = 1 }:turn(3) } } }", NULL, "exists in shapes");
+    refused(HEAD "return s.scene { solids = { { shape = s.sphere { radius = 1 }:turn(3) } } }", NULL,
+            "exists in shapes");
     refused(HEAD "return s.scene { solids = { { shape = s.box { min = { 0, 0, 0 } } } } }", NULL, "either min and max");
-    refused(HEAD "return s.scene { solids = { { shape = s.cylinder { axis = 'w', radius = 1, length = 1 } } } }", NULL, "an axis");
+    refused(HEAD "return s.scene { solids = { { shape = s.cylinder { axis = 'w', radius = 1, length = 1 } } } }", NULL,
+            "an axis");
     refused(HEAD "local a = s.sphere { radius = 1 } for i = 1, 20 do a = a + a end\n"
-                 "return s.scene { particles = 1, solids = { { shape = a, material = " MATTER " } } }", NULL, "4096");
+                 "return s.scene { particles = 1, solids = { { shape = a, material = " MATTER " } } }",
+            NULL, "4096");
 }
 
 /* ---- functions and fibres ---------------------------------------------------------------------------------------- */
@@ -295,8 +328,10 @@ static void test_shapes(void) {
 static void check_field(const char *fibres, double x, double y, double z, int families, const double *expected) {
     char text[1024];
     snprintf(text, sizeof text,
-             HEAD "return s.scene { particles = 1, solids = { { shape = s.sphere { radius = 9 }, fibres = s.fibres.%s,\n"
-                  "  material = " MATTER " } } }", fibres);
+             HEAD
+             "return s.scene { particles = 1, solids = { { shape = s.sphere { radius = 9 }, fibres = s.fibres.%s,\n"
+             "  material = " MATTER " } } }",
+             fibres);
     script *s = loaded(text, NULL);
     if (!s) return;
     const scene_fibres *f = &script_scene(s)->bodies[0].fibres;
@@ -325,17 +360,21 @@ static void test_fibres(void) {
 }
 
 static void test_functions(void) {
-    script *s = loaded(HEAD
+    script *s = loaded(
+        HEAD
         "local wave = { amplitude = 2 }\n"
         "setmetatable(wave, { __call = function(self, t) return self.amplitude * t end })\n"
         "local list, scale = { 10, 20, 30 }, 1\n"
         "local function helper(t) local total = 0 for i, v in ipairs(list) do total = total + v * #list end\n"
         "  for k, v in pairs(wave) do total = total + v end return total + scale * t end\n"
-        "return s.scene { particles = 1, duration = 4, solids = { { shape = s.sphere { radius = 1 }, material = " MATTER ",\n"
+        "return s.scene { particles = 1, duration = 4, solids = { { shape = s.sphere { radius = 1 }, material = " MATTER
+        ",\n"
         "    velocity = function(x, y, z) return -y, x, 0 end } },\n"
-        "  grips = { { shape = s.sphere { radius = 0.5, center = { 1, 2, 3 } }, start = 1, stop = 3, protects = false,\n"
+        "  grips = { { shape = s.sphere { radius = 0.5, center = { 1, 2, 3 } }, start = 1, stop = 3, protects = "
+        "false,\n"
         "    velocity = function(t) local own = {} own.x = wave(t) return own.x, helper(t), math.floor(2.5) end,\n"
-        "    spin = function(t) return { 0, 0, t } end } } }", NULL);
+        "    spin = function(t) return { 0, 0, t } end } } }",
+        NULL);
     if (!s) return;
     const scene_grip *g = &script_scene(s)->grips[0];
     double t = 1.5, v[3];
@@ -351,13 +390,15 @@ static void test_functions(void) {
     script_close(s);
 }
 
-/* ---- the sandbox, where it lets through ---------------------------------------------------------------------------- */
+/* ---- the sandbox, where it lets through ----------------------------------------------------------------------------
+ */
 
 /* Loads a scene whose title is the value of an expression, after some statements. */
 static void check_title(const char *statements, const char *expression, const char *expected) {
     char text[2048];
-    snprintf(text, sizeof text, HEAD "%s\nreturn s.scene { particles = 1, title = tostring(%s), solids = { " BALL " } }",
-             statements, expression);
+    snprintf(text, sizeof text,
+             HEAD "%s\nreturn s.scene { particles = 1, title = tostring(%s), solids = { " BALL " } }", statements,
+             expression);
     script *s = loaded(text, NULL);
     if (!s) return;
     CHECK(strcmp(script_scene(s)->title, expected) == 0);
@@ -373,10 +414,12 @@ static void test_sandbox(void) {
     check_title("a = 5 local f = load 'return a + 1'", "f()", "6");
     check_title("local ok, e = pcall(error, 'no')", "tostring(ok) .. e", "falseno");
     check_title("local ok, e = xpcall(function() error('x', 0) end, function(m) return m .. '!' end)", "e", "x!");
-    check_title("local t = { b = 2, a = 1, [2] = 'y', [1] = 'x', c = 3 } local o = '' for k, v in pairs(t) do o = o .. k .. v end",
+    check_title("local t = { b = 2, a = 1, [2] = 'y', [1] = 'x', c = 3 } local o = '' for k, v in pairs(t) do o = o .. "
+                "k .. v end",
                 "o", "1x2ya1b2c3");
-    check_title("local t, o, k = { z = 1, y = 2, [-1] = 3 }, '' repeat k = next(t, k) o = o .. tostring(k) until k == nil", "o",
-                "-1yznil");
+    check_title(
+        "local t, o, k = { z = 1, y = 2, [-1] = 3 }, '' repeat k = next(t, k) o = o .. tostring(k) until k == nil", "o",
+        "-1yznil");
     check_title("local t = {} for i = 1, 300 do t[i] = { key = i % 3, at = i } end\n"
                 "table.sort(t, function(a, b) return a.key < b.key end) local stable = true\n"
                 "for i = 2, 300 do if t[i].key == t[i - 1].key and t[i].at < t[i - 1].at then stable = false end end",
@@ -397,8 +440,9 @@ static void test_log(void) {
 }
 
 static void test_random(void) {
-    const char *text = HEAD "return s.scene { particles = 1, title = ('%.17g %d'):format(math.random(), math.random(1000)),\n"
-                            "  solids = { " BALL " } }";
+    const char *text =
+        HEAD "return s.scene { particles = 1, title = ('%.17g %d'):format(math.random(), math.random(1000)),\n"
+             "  solids = { " BALL " } }";
     char first[128];
     script *s = loaded(text, NULL);
     if (!s) return;
@@ -460,14 +504,14 @@ static void test_resolved(void) {
 
 /* ---- memory ------------------------------------------------------------------------------------------------------ */
 
-/* Every allocation fails once, from the first on, until a load gets through; nothing leaks, nothing crashes, and each failure
- * is reported as the system's. */
+/* Every allocation fails once, from the first on, until a load gets through; nothing leaks, nothing crashes, and each
+ * failure is reported as the system's. */
 static void test_allocation_failures(void) {
-    static const char text[] =
-        HEAD "local p = s.params { pull = 1 }\n"
-             "return s.scene { particles = 1, solids = { { shape = s.sphere { radius = 1 } - s.sphere { radius = 0.5 },\n"
-             "  material = s.recipe('tube', { damage = { eta = 1 } }), fibres = s.fibres.direction { 1, 0, 0 } } },\n"
-             "  grips = { { shape = s.sphere { radius = 0.2 }, velocity = function(t) return p.pull, t, 0 end } } }\n";
+    static const char text[] = HEAD
+        "local p = s.params { pull = 1 }\n"
+        "return s.scene { particles = 1, solids = { { shape = s.sphere { radius = 1 } - s.sphere { radius = 0.5 },\n"
+        "  material = s.recipe('tube', { damage = { eta = 1 } }), fibres = s.fibres.direction { 1, 0, 0 } } },\n"
+        "  grips = { { shape = s.sphere { radius = 0.2 }, velocity = function(t) return p.pull, t, 0 end } } }\n";
     size_t before = memory_live_bytes();
     int failures = 0;
     /* Every allocation near the start, then a sample: Lua makes thousands of the same kind. */
@@ -478,7 +522,8 @@ static void test_allocation_failures(void) {
         bool through = s != NULL;
         if (!through) {
             failures++;
-            if (reports.count < 1 || reports.items[0].code != STATUS_SYSTEM) printf("  n = %d: %s\n", (int)n, complaint());
+            if (reports.count < 1 || reports.items[0].code != STATUS_SYSTEM)
+                printf("  n = %d: %s\n", (int)n, complaint());
             CHECK(reports.count >= 1 && reports.items[0].code == STATUS_SYSTEM);
         }
         script_close(s);
@@ -504,6 +549,7 @@ int main(void) {
     RUN(test_knobs);
     RUN(test_twins);
     RUN(test_recipes);
+    RUN(test_recipe_folder);
     RUN(test_recipe_option);
     RUN(test_shapes);
     RUN(test_fibres);

@@ -1,5 +1,5 @@
-/* The sandbox's searches against Lua's own string library, over random subjects and patterns: the same results, or an error in
- * both. Alphabets are small, so that most patterns are valid and many match. */
+/* The sandbox's searches against Lua's own string library, over random subjects and patterns: the same results, or an
+ * error in both. Alphabets are small, so that most patterns are valid and many match. */
 #include "base/random.h"
 #include "check.h"
 #include "script/internal.h"
@@ -23,9 +23,10 @@ static void random_subject(char *out) {
 }
 
 static void random_pattern(char *out) {
-    static const char *const pieces[] = {"a", "b", "1", ".", "%a", "%d", "%s", "%w", "%A", "[ab]", "[^a]", "[a-b1]", "(", ")", "()",
-                                         "%1", "%2", "$", "%b()", "%bab", "%f[%a]", "%f[^%a]", "[]a]", "[%d ]", "%.", "%(", "^",
-                                         "%", "[a", "-", "[%a-]", "%0"};
+    static const char *const pieces[] = {"a",  "b",    "1",    ".",      "%a",     "%d",      "%s",    "%w",
+                                         "%A", "[ab]", "[^a]", "[a-b1]", "(",      ")",       "()",    "%1",
+                                         "%2", "$",    "%b()", "%bab",   "%f[%a]", "%f[^%a]", "[]a]",  "[%d ]",
+                                         "%.", "%(",   "^",    "%",      "[a",     "-",       "[%a-]", "%0"};
     static const char *const suffixes[] = {"", "", "", "*", "+", "-", "?"};
     out[0] = '\0';
     if (draw(5) == 0) strcat(out, "^");
@@ -36,21 +37,21 @@ static void random_pattern(char *out) {
     if (draw(5) == 0) strcat(out, "$");
 }
 
-static const char program[] =
-    "local subject, pattern, replacement, from = ...\n"
-    "local out = {}\n"
-    "local function add(...) for i = 1, select('#', ...) do out[#out + 1] = tostring((select(i, ...))) end out[#out + 1] = '|' end\n"
-    "local function try(f, ...) local ok, a, b, c, d, e = pcall(f, ...)\n"
-    "  if ok then add(a, b, c, d, e) else add('error') end end\n"
-    "try(string.find, subject, pattern, from)\n"
-    "try(string.match, subject, pattern, from)\n"
-    "try(string.gsub, subject, pattern, replacement)\n"
-    "try(string.gsub, subject, pattern, function(a, b) return b end, 2)\n"
-    "try(string.gsub, subject, pattern, { a = 'x', b = false })\n"
-    "try(string.find, subject, pattern, from, true)\n"
-    "try(function() for a, b in string.gmatch(subject, pattern) do add(a, b) end end)\n"
-    "try(string.rep, subject, from, pattern)\n"
-    "return table.concat(out, ' ')\n";
+static const char program[] = "local subject, pattern, replacement, from = ...\n"
+                              "local out = {}\n"
+                              "local function add(...) for i = 1, select('#', ...) do out[#out + 1] = "
+                              "tostring((select(i, ...))) end out[#out + 1] = '|' end\n"
+                              "local function try(f, ...) local ok, a, b, c, d, e = pcall(f, ...)\n"
+                              "  if ok then add(a, b, c, d, e) else add('error') end end\n"
+                              "try(string.find, subject, pattern, from)\n"
+                              "try(string.match, subject, pattern, from)\n"
+                              "try(string.gsub, subject, pattern, replacement)\n"
+                              "try(string.gsub, subject, pattern, function(a, b) return b end, 2)\n"
+                              "try(string.gsub, subject, pattern, { a = 'x', b = false })\n"
+                              "try(string.find, subject, pattern, from, true)\n"
+                              "try(function() for a, b in string.gmatch(subject, pattern) do add(a, b) end end)\n"
+                              "try(string.rep, subject, from, pattern)\n"
+                              "return table.concat(out, ' ')\n";
 
 /* What a state says to one case; the text stays on the state's stack. */
 static const char *answer(lua_State *L, const char *subject, const char *pattern, const char *replacement, int from) {
@@ -82,7 +83,8 @@ static void test_against_lua(void) {
         random_pattern(pattern);
         const char *replacement = replacements[draw(8)];
         int from = (int)draw(9) - 4;
-        const char *a = answer(theirs, subject, pattern, replacement, from), *b = answer(ours, subject, pattern, replacement, from);
+        const char *a = answer(theirs, subject, pattern, replacement, from),
+                   *b = answer(ours, subject, pattern, replacement, from);
         errors += strncmp(a, "error", 5) == 0;
         matches += strncmp(a, "error", 5) != 0 && strncmp(a, "nil", 3) != 0;
         if (strcmp(a, b) == 0) continue;

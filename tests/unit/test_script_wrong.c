@@ -1,8 +1,10 @@
-/* Wrong scenes: tests/cases/wrong/NN_name.lua must not load, tests/cases/wrong_running/NN_name.lua must load and fail later.
+/* Wrong scenes: tests/cases/wrong/NN_name.lua must not load, tests/cases/wrong_running/NN_name.lua must load and fail
+ * later.
  *
  * A case says in its first line (the binary one in its second) what its report must contain:
  *     -- expect: FILE:LINE key=KEY nearest=NAME found=WORDS says WORDS
- * FILE is the file's last name; key and found may be a part; '_' in `found` stands for a blank; several lines each want a report. */
+ * FILE is the file's last name; key and found may be a part; '_' in `found` stands for a blank; several lines each want
+ * a report. */
 #include "base/memory.h"
 #include "check.h"
 #include "script/script.h"
@@ -78,7 +80,8 @@ static void check_reports(const char *name, const char *path) {
         for (int i = 0; i < reports.count; i++) met = met || fits(&reports.items[i], &e);
         CHECK(met);
         if (met) continue;
-        printf("  %s wants %s:%d key=%s nearest=%s found=%s says %s\n", name, e.file, e.line, e.key, e.nearest, e.found, e.says);
+        printf("  %s wants %s:%d key=%s nearest=%s found=%s says %s\n", name, e.file, e.line, e.key, e.nearest, e.found,
+               e.says);
         for (int i = 0; i < reports.count; i++) {
             char text[1500];
             report_format(&reports.items[i], text, sizeof text);

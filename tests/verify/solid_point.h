@@ -17,13 +17,15 @@ typedef struct material_point {
     real storage[FIELD_LIMIT][9 * PACK];
 } material_point;
 
+#define POINT_TABLE(name) &SOLID_EFFECT(name),
+static const effect *const point_effects[SOLID_EFFECTS] = {SOLID_EFFECT_LIST(POINT_TABLE)};
+
 /* A point with one tile of one pack; all lanes hold the same particle of volume 1. Effects named in `mask` are on. */
 static inline material_point *point_create(uint32_t mask) {
     material_point *p = aligned_alloc(64, (sizeof *p + 63) / 64 * 64);
     memset(p, 0, sizeof *p);
-    const effect *const tables[] = {&SOLID_EFFECT(damage), &SOLID_EFFECT(elastic), &SOLID_EFFECT(fibres)};
-    for (int e = 0; e < 3; e++) {
-        effect_values_default(tables[e], &p->values[e]);
+    for (int e = 0; e < SOLID_EFFECTS; e++) {
+        effect_values_default(point_effects[e], &p->values[e]);
         p->values[e].on = mask >> e & 1;
     }
     p->tile = (solid_tile){.pack_count = 1, .count = PACK};
@@ -53,22 +55,26 @@ static tile_work point_work(material_point *p, const effect *e, int index, real 
                        .result = &p->result, .effect = index, .dt = dt};
 }
 
+/* g(d), from the effects that are on. */
+static inline void point_degrade(material_point *p) {
+    real constants[CONSTANTS];
+    for (int i = 0; i < PACK; i++) p->scratch.degradation[i] = 1;
+    for (int e = 0; e < SOLID_EFFECTS; e++) {
+        if (!p->values[e].on || !point_effects[e]->stages->degrade) continue;
+        tile_work w = point_work(p, point_effects[e], e, constants, 0);
+        point_effects[e]->stages->degrade(&w);
+    }
+}
+
 /* τ of the effects that are on, as xx yy zz xy yz xz. */
 static inline void point_stress(material_point *p, double tau[6]) {
     real constants[CONSTANTS];
-    for (int i = 0; i < PACK; i++) p->scratch.degradation[i] = 1;
+    point_degrade(p);
     memset(p->scratch.kirchhoff, 0, sizeof p->scratch.kirchhoff);
-    if (p->values[EFFECT_damage].on) {
-        tile_work w = point_work(p, &SOLID_EFFECT(damage), EFFECT_damage, constants, 0);
-        SOLID_EFFECT(damage).stages->degrade(&w);
-    }
-    if (p->values[EFFECT_elastic].on) {
-        tile_work w = point_work(p, &SOLID_EFFECT(elastic), EFFECT_elastic, constants, 0);
-        SOLID_EFFECT(elastic).stages->stress(&w);
-    }
-    if (p->values[EFFECT_fibres].on) {
-        tile_work w = point_work(p, &SOLID_EFFECT(fibres), EFFECT_fibres, constants, 0);
-        SOLID_EFFECT(fibres).stages->stress(&w);
+    for (int e = 0; e < SOLID_EFFECTS; e++) {
+        if (!p->values[e].on || !point_effects[e]->stages->stress) continue;
+        tile_work w = point_work(p, point_effects[e], e, constants, 0);
+        point_effects[e]->stages->stress(&w);
     }
     for (int c = 0; c < 6; c++) tau[c] = p->scratch.kirchhoff[c * PACK];
 }
@@ -77,24 +83,29 @@ static inline void point_stress(material_point *p, double tau[6]) {
 static inline double point_energy(material_point *p) {
     real constants[CONSTANTS];
     double total = 0;
-    for (int i = 0; i < PACK; i++) p->scratch.degradation[i] = 1;
-    if (p->values[EFFECT_damage].on) {
-        tile_work w = point_work(p, &SOLID_EFFECT(damage), EFFECT_damage, constants, 0);
-        SOLID_EFFECT(damage).stages->degrade(&w);
-    }
+    point_degrade(p);
     p->tile.count = 1;
-    if (p->values[EFFECT_elastic].on) {
-        tile_work w = point_work(p, &SOLID_EFFECT(elastic), EFFECT_elastic, constants, 0);
-        SOLID_EFFECT(elastic).stages->energy(&w);
-        total += w.energy[0];
-    }
-    if (p->values[EFFECT_fibres].on) {
-        tile_work w = point_work(p, &SOLID_EFFECT(fibres), EFFECT_fibres, constants, 0);
-        SOLID_EFFECT(fibres).stages->energy(&w);
-        total += w.energy[1];
+    for (int e = 0; e < SOLID_EFFECTS; e++) {
+        if (!p->values[e].on || !point_effects[e]->stages->energy) continue;
+        tile_work w = point_work(p, point_effects[e], e, constants, 0);
+        point_effects[e]->stages->energy(&w);
+        total += w.energy[0] + w.energy[1];
     }
     p->tile.count = PACK;
     return total;
+}
+
+/* ρ0 c², the bound that the time step is chosen by. */
+static inline double point_wave(material_point *p) {
+    real constants[CONSTANTS];
+    point_degrade(p);
+    memset(p->scratch.wave_modulus, 0, sizeof p->scratch.wave_modulus);
+    for (int e = 0; e < SOLID_EFFECTS; e++) {
+        if (!p->values[e].on || !point_effects[e]->stages->wave) continue;
+        tile_work w = point_work(p, point_effects[e], e, constants, 0);
+        point_effects[e]->stages->wave(&w);
+    }
+    return p->scratch.wave_modulus[0];
 }
 
 #endif

@@ -1,17 +1,19 @@
 /* Damage of the matrix: explicit, geometric, anisotropic (AnisoMPM §3, §4.3; METHOD.md §2).
  *
- * σ is the undegraded Cauchy stress of the matrix; it shares its eigenvectors n_i with b = F Fᵀ, because τ = μ b + p I. One
- * symmetric eigen-decomposition of b therefore gives σ⁺ and, through V⁻¹ F a = Σ (n_i · F a)/s_i n_i, the rotated fibres R a.
+ * σ is the undegraded Cauchy stress of the matrix; it shares its eigenvectors n_i with b = F Fᵀ, because τ = μ b + p I (`elastic`)
+ * or 2μ (b − √b) + p I (`corotated`). One symmetric eigen-decomposition of b therefore gives σ⁺ and, through V⁻¹ F a = Σ (n_i · F a)/s_i n_i, the rotated fibres R a.
  *     Φ = tr(A σ⁺ A σ⁺)/σc²,  A = I + α1 (R a1)(R a1)ᵀ + α2 (R a2)(R a2)ᵀ
  *     H ← min(max(H, ζ⟨Φ − 1⟩), 1e6),  d ← min(1, d + Δt/η ⟨(1 − d) H − (d − l0² Δd)⟩)
  * A's eigenvalues lie in [0, 1], so Φ ≤ |σ|²/σc²: where that bound cannot raise H, nothing is decomposed. */
+#include "solid/moduli.h"
 #include "solid/tensor.h"
 
 #include <math.h>
 #include <stdio.h>
 
-enum { ETA_INVERSE, CRITICAL_INVERSE2, ALPHA1, ALPHA2, RESIDUAL, ZETA, LENGTH2, MU, LAMBDA, FROZEN, LAPLACIAN_BOUND };
-enum { KEY_SIGMA_C, KEY_BREAK_STRETCH, KEY_ETA, KEY_ALPHA, KEY_ALPHA2, KEY_RESIDUAL, KEY_ZETA, KEY_LENGTH_SCALE, KEY_COUNT };
+enum { ETA_INVERSE, CRITICAL_INVERSE2, ALPHA1, ALPHA2, RESIDUAL, ZETA, LENGTH2, MU, LAMBDA, COROTATED, FROZEN, LAPLACIAN_BOUND, IMPLICIT };
+enum { KEY_SIGMA_C, KEY_BREAK_STRETCH, KEY_ETA, KEY_ALPHA, KEY_ALPHA2, KEY_RESIDUAL, KEY_ZETA, KEY_LENGTH_SCALE, KEY_FORM,
+       KEY_TOLERANCE, KEY_COUNT };
 
 #define DRIVING_LIMIT ((real)1e6)
 #define OVERSHOOT ((real)1e-3) /* in d, that a step may leave behind */
@@ -19,23 +21,39 @@ enum { KEY_SIGMA_C, KEY_BREAK_STRETCH, KEY_ETA, KEY_ALPHA, KEY_ALPHA2, KEY_RESID
 
 static void constants(const effect_values *all, const solid_definition *d, bool protects, real out[CONSTANTS]) {
     const effect_values *own = &all[EFFECT_damage];
-    real elastic[CONSTANTS];
-    const solid_stages *elastic_stages = SOLID_EFFECT(elastic).stages;
-    elastic_stages->constants(all, d, protects, elastic);
+    double mu = 0, lambda = 0, lame_lambda;
+    elastic_model model = solid_elastic_moduli(all, &mu, &lambda, &lame_lambda);
     double sigma_c = own->value[KEY_SIGMA_C][0], length = own->value[KEY_LENGTH_SCALE][0];
     if (length == 0) length = 0.5 * d->dx;
-    out[ETA_INVERSE] = (real)(1 / own->value[KEY_ETA][0]);
+    out[ETA_INVERSE] = own->value[KEY_ETA][0] > 0 ? (real)(1 / own->value[KEY_ETA][0]) : 0; /* implicit: not used */
     out[CRITICAL_INVERSE2] = (real)(1 / (sigma_c * sigma_c));
     out[ALPHA1] = (real)own->value[KEY_ALPHA][0];
     out[ALPHA2] = (real)own->value[KEY_ALPHA2][0];
     out[RESIDUAL] = (real)own->value[KEY_RESIDUAL][0];
     out[ZETA] = (real)own->value[KEY_ZETA][0];
     out[LENGTH2] = (real)(length * length);
-    out[MU] = elastic[0];
-    out[LAMBDA] = elastic[1];
+    out[MU] = (real)mu;
+    out[LAMBDA] = (real)lambda;
+    out[COROTATED] = model == ELASTIC_COROTATED ? 1 : 0;
     out[FROZEN] = protects ? 1 : 0;
     /* Σ|N''| = 4 a direction for both splines: no discrete Laplacian of values in [0,1] exceeds 12/dx². */
+    out[IMPLICIT] = (real)own->value[KEY_FORM][0];
     out[LAPLACIAN_BOUND] = (real)(12 * length * length / (d->dx * d->dx));
+}
+
+/* The implicit form is solved on the grid for all materials at once, to the strictest of their tolerances. */
+static void declare(solid *s, int material, const effect_values *all) {
+    const effect_values *own = &all[EFFECT_damage];
+    s->material_implicit[material] = own->value[KEY_FORM][0] != 0;
+    if (!s->material_implicit[material]) return;
+    double length = own->value[KEY_LENGTH_SCALE][0] > 0 ? own->value[KEY_LENGTH_SCALE][0] : 0.5 * s->definition.dx;
+    s->implicit_on = true;
+    s->implicit_materials[material] = (implicit_material){(real)own->value[KEY_ETA][0], (real)(length * length)};
+    s->implicit_tolerance = fmin(s->implicit_tolerance, own->value[KEY_TOLERANCE][0]);
+}
+
+static status solve(solid *s, real dt, report *r) {
+    return s->implicit_on ? implicit_solve(s, dt, r) : STATUS_OK;
 }
 
 /* g(d) = (1 − d)² (1 − r) + r */
@@ -85,14 +103,43 @@ SIMD_INLINE vec driving_form(sym3v A, const eigen3v *e, vec3v s) {
     return pure + mixed + mixed;
 }
 
+/* Principal values of τ from the eigenvalues of b, and |τ|² or a bound of it without them, of each elastic model. */
+SIMD_INLINE vec3v principal_closed_form(const real *c, vec3v square, vec pressure) {
+    vec mu = vec_all(c[MU]);
+    return (vec3v){vec_fma(mu, square.x, pressure), vec_fma(mu, square.y, pressure), vec_fma(mu, square.z, pressure)};
+}
+
+SIMD_INLINE vec square_closed_form(const real *c, sym3v b, vec pressure) {
+    sym3v tau = {vec_fma(vec_all(c[MU]), b.xx, pressure), vec_fma(vec_all(c[MU]), b.yy, pressure),
+                 vec_fma(vec_all(c[MU]), b.zz, pressure), c[MU] * b.xy, c[MU] * b.yz, c[MU] * b.xz};
+    return sym3v_square_sum(tau);
+}
+
+/* Only where J > 0: all stretches count as positive. */
+SIMD_INLINE vec3v principal_corotated(const real *c, vec3v square, vec pressure) {
+    vec twice_mu = vec_all(2 * c[MU]), zero = vec_all(0);
+    vec3v s = {vec_sqrt(vec_max(square.x, zero)), vec_sqrt(vec_max(square.y, zero)), vec_sqrt(vec_max(square.z, zero))};
+    return (vec3v){vec_fma(twice_mu, square.x - s.x, pressure), vec_fma(twice_mu, square.y - s.y, pressure),
+                   vec_fma(twice_mu, square.z - s.z, pressure)};
+}
+
+/* s² − s = (s² − 1) s/(1 + s), and s/(1 + s) grows with s: |b − √b| ≤ |b − I| S/(1 + S) for any S ≥ the largest s. */
+SIMD_INLINE vec square_bound_corotated(const real *c, sym3v b, vec pressure) {
+    vec largest = vec_sqrt(sym3v_largest_bound(b));
+    sym3v strain = {b.xx - 1, b.yy - 1, b.zz - 1, b.xy, b.yz, b.xz};
+    vec shear = 2 * c[MU] * vec_sqrt(sym3v_square_sum(strain)) * largest / (1 + largest);
+    vec norm = vec_fma(vec_all((real)1.7320508075688773), vec_abs(pressure), shear); /* |p I| = √3 |p| */
+    return norm * norm;
+}
+
 /* Φ σc² of the particles whose bound says that it could matter. */
 SIMD_INLINE vec driving_stress(const tile_work *w, int32_t pack, int part, mat3v F, sym3v b, vec J, vec pressure) {
     const real *c = w->constants;
     eigen3v e = sym3v_eigen(b);
     vec tiny = vec_all((real)1e-20), inverse_J = 1 / vec_max(J, vec_all((real)1e-3));
-    vec3v positive = {vec_max(vec_fma(vec_all(c[MU]), e.value.x, pressure) * inverse_J, vec_all(0)),
-                      vec_max(vec_fma(vec_all(c[MU]), e.value.y, pressure) * inverse_J, vec_all(0)),
-                      vec_max(vec_fma(vec_all(c[MU]), e.value.z, pressure) * inverse_J, vec_all(0))};
+    vec3v tau = c[COROTATED] != 0 ? principal_corotated(c, e.value, pressure) : principal_closed_form(c, e.value, pressure);
+    vec3v positive = {vec_max(tau.x * inverse_J, vec_all(0)), vec_max(tau.y * inverse_J, vec_all(0)),
+                      vec_max(tau.z * inverse_J, vec_all(0))};
     sym3v A = {vec_all(1), vec_all(1), vec_all(1), vec_all(0), vec_all(0), vec_all(0)};
     if (c[ALPHA1] != 0 || c[ALPHA2] != 0) {
         vec3v inverse = {1 / vec_sqrt(vec_max(e.value.x, tiny)), 1 / vec_sqrt(vec_max(e.value.y, tiny)),
@@ -115,11 +162,11 @@ SIMD_INLINE vec history(const tile_work *w, int32_t pack, int part, vec d, vec H
     mat3v F = mat3v_load(&w->state->fields[FIELD_DEFORMATION], pack, part);
     vec J = mat3v_determinant(F);
     sym3v b = mat3v_gram(F);
-    vec pressure = J * vec_fma(vec_all(c[LAMBDA]), J - 1, vec_all(-c[MU]));
-    sym3v tau = {vec_fma(vec_all(c[MU]), b.xx, pressure), vec_fma(vec_all(c[MU]), b.yy, pressure),
-                 vec_fma(vec_all(c[MU]), b.zz, pressure), c[MU] * b.xy, c[MU] * b.yz, c[MU] * b.xz};
+    bool corotated = c[COROTATED] != 0;
+    vec pressure = J * vec_fma(vec_all(c[LAMBDA]), J - 1, vec_all(corotated ? 0 : -c[MU]));
     vec inverse_J = 1 / vec_max(J, vec_all((real)1e-3));
-    vec bound = sym3v_square_sum(tau) * inverse_J * inverse_J * c[CRITICAL_INVERSE2];
+    vec square = corotated ? square_bound_corotated(c, b, pressure) : square_closed_form(c, b, pressure);
+    vec bound = square * inverse_J * inverse_J * c[CRITICAL_INVERSE2];
     vec_mask open = (bound > BOUND_MARGIN * (1 + H * (1 / c[ZETA]))) & (J > 0) & (d < 1);
     if (!vec_any(open)) return H;
     vec phi = driving_stress(w, pack, part, F, b, J, pressure) * c[CRITICAL_INVERSE2];
@@ -137,11 +184,30 @@ SIMD_INLINE vec relaxation_limit(const real *c, vec d, vec H, vec spread) {
     return vec_select(counts, rate * gap / (gap + OVERSHOOT), vec_all(0));
 }
 
+/* The grid has solved for d; scratch->laplacian holds the increment. Then the history of the new F, for the next solve. */
+static void update_implicit(tile_work *w) {
+    const solid_field *damage = &w->state->fields[w->state->damage_field];
+    const solid_field *histories = &w->state->fields[w->state->history_field];
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            int32_t pack = w->tile->first_pack + k;
+            vec d = vec_load(field_at(damage, pack, 0, part)), H = vec_load(field_at(histories, pack, 0, part));
+            vec increment = vec_load(scratch_at(w->scratch->laplacian, 1, k, 0, part));
+            d = vec_min(d + vec_max(increment, vec_all(0)), vec_all(1));
+            vec_store(field_at(damage, pack, 0, part), d);
+            vec_store(field_at(histories, pack, 0, part), history(w, pack, part, d, H));
+        }
+}
+
 static void update(tile_work *w) {
     const solid_field *damage = &w->state->fields[w->state->damage_field];
     const solid_field *histories = &w->state->fields[w->state->history_field];
     const real *c = w->constants;
     if (c[FROZEN] != 0) return;
+    if (c[IMPLICIT] != 0) {
+        update_implicit(w);
+        return;
+    }
     real rate = w->dt * c[ETA_INVERSE];
     vec limit = vec_all(0);
     for (int k = 0; k < w->tile->pack_count; k++)
@@ -162,20 +228,18 @@ static void update(tile_work *w) {
 
 /* ---- the table --------------------------------------------------------------------------------------------------- */
 
-/* σc from a stretch p: the energy density of (1 + p) I, undegraded, without fibres, with the plain Lamé λ whatever `lame`
- * is, so that the papers' numbers hold (FACTS.md §1). */
-static double critical_from_stretch(const effect_values *elastic, double p) {
-    double E = elastic->value[0][0], nu = elastic->value[1][0];
-    double mu = E / (2 * (1 + nu)), lambda = E * nu / ((1 + nu) * (1 - 2 * nu));
+/* σc from a stretch p: the closed form's energy density of (1 + p) I, undegraded, without fibres, with the plain Lamé λ: so
+ * the papers' numbers hold (FACTS.md §1), and σc is the same whatever `lame` and the elastic model are. */
+static double critical_from_stretch(double mu, double lambda, double p) {
     double s = 1 + p, growth = p * (3 + p * (3 + p)); /* J − 1 */
     return 1.5 * mu * (s * s - 1) - mu * growth + 0.5 * lambda * growth * growth;
 }
 
 /* The smallest p > 0 with that energy, by doubling and bisection; the energy grows from p = 0 for every admissible (E, ν) as
  * far as the search goes, or the search says so. */
-static status stretch_from_critical(const effect_values *elastic, double sigma_c, double *p, report *r) {
+static status stretch_from_critical(double mu, double lambda, double sigma_c, double *p, report *r) {
     double low = 0, high = 1e-6;
-    while (critical_from_stretch(elastic, high) < sigma_c) {
+    while (critical_from_stretch(mu, lambda, high) < sigma_c) {
         low = high;
         high *= 1.5;
         if (high > 1e4)
@@ -183,7 +247,7 @@ static status stretch_from_critical(const effect_values *elastic, double sigma_c
     }
     for (int i = 0; i < 200; i++) {
         double middle = 0.5 * (low + high);
-        if (critical_from_stretch(elastic, middle) < sigma_c) low = middle;
+        if (critical_from_stretch(mu, lambda, middle) < sigma_c) low = middle;
         else high = middle;
     }
     *p = 0.5 * (low + high);
@@ -191,17 +255,21 @@ static status stretch_from_critical(const effect_values *elastic, double sigma_c
 }
 
 static status resolve(effect_values *own, const effect_values *all, report *r) {
-    const effect_values *elastic = &all[EFFECT_elastic];
-    if (!elastic->on) return STATUS_OK; /* `needs` reports it */
+    double mu, model_lambda, lambda;
+    if (own->value[KEY_ETA][0] == 0 && own->value[KEY_FORM][0] == 0)
+        return report_input(r, NULL, 0, "damage.eta", "a positive viscosity, or form = \"implicit\"", "0 in the explicit form", NULL);
+    if (solid_elastic_moduli(all, &mu, &model_lambda, &lambda) == ELASTIC_NONE) return STATUS_OK; /* `needs` reports it */
     if (own->given[KEY_SIGMA_C])
-        return stretch_from_critical(elastic, own->value[KEY_SIGMA_C][0], &own->value[KEY_BREAK_STRETCH][0], r);
-    double sigma_c = critical_from_stretch(elastic, own->value[KEY_BREAK_STRETCH][0]);
+        return stretch_from_critical(mu, lambda, own->value[KEY_SIGMA_C][0], &own->value[KEY_BREAK_STRETCH][0], r);
+    double sigma_c = critical_from_stretch(mu, lambda, own->value[KEY_BREAK_STRETCH][0]);
     own->value[KEY_SIGMA_C][0] = sigma_c;
     if (sigma_c > 0) return STATUS_OK;
     char found[64];
     snprintf(found, sizeof found, "%g (critical value %g)", own->value[KEY_BREAK_STRETCH][0], sigma_c);
     return report_input(r, NULL, 0, "damage.break_stretch", "a stretch whose critical value is positive", found, NULL);
 }
+
+static const char *const form_choices[] = {"explicit", "implicit", NULL};
 
 static const parameter parameters[KEY_COUNT] = {
     [KEY_SIGMA_C] = {.key = "sigma_c", .unit = "mass/(length time^2)", .doc = "critical stress: damage starts above it",
@@ -211,7 +279,7 @@ static const parameter parameters[KEY_COUNT] = {
                            .doc = "stretch whose energy density sets sigma_c (0.2: about 20 %)", .minimum = 1e-6,
                            .maximum = 100, .fallback = {0.2}, .live = true, .logarithmic = true, .twin = "sigma_c"},
     [KEY_ETA] = {.key = "eta", .unit = "time", .doc = "viscosity of damage: larger is more ductile, smaller more brittle",
-                 .minimum = 1e-12, .maximum = 1e6, .fallback = {0.1}, .live = true, .logarithmic = true},
+                 .maximum = 1e6, .fallback = {0.1}, .live = true, .logarithmic = true},
     [KEY_ALPHA] = {.key = "alpha", .unit = "1",
                    .doc = "-1: stress along the first fibres does no damage, cracks run along them; 0: isotropic",
                    .minimum = -1, .maximum = 0, .live = true},
@@ -222,6 +290,10 @@ static const parameter parameters[KEY_COUNT] = {
                   .maximum = 1e6, .fallback = {1}, .live = true, .logarithmic = true},
     [KEY_LENGTH_SCALE] = {.key = "length_scale", .unit = "length", .doc = "half width of a crack; 0: half the grid spacing",
                           .maximum = 1e9},
+    [KEY_FORM] = {.key = "form", .unit = "1", .doc = "explicit: cheap, limits the time step by eta; implicit: solved on the grid, any eta",
+                  .kind = PARAMETER_CHOICE, .maximum = 1, .choices = form_choices},
+    [KEY_TOLERANCE] = {.key = "tolerance", .unit = "1", .doc = "relative residual of the implicit solve", .minimum = 1e-14,
+                       .maximum = 0.1, .fallback = {1e-4}, .live = true, .logarithmic = true},
 };
 
 static const effect_field fields[] = {
@@ -237,11 +309,11 @@ static const effect_measure measures[] = {
     {"broken_fraction", "1", "fraction of particles over 0.9"},
 };
 
-static const solid_stages stages = {.constants = constants, .degrade = degrade, .update = update};
+static const solid_stages stages = {.constants = constants, .declare = declare, .degrade = degrade, .solve = solve, .update = update};
 
 const effect SOLID_EFFECT(damage) = {
-    .name = "damage", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "anisotropic damage of the matrix, explicit",
+    .name = "damage", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "anisotropic damage of the matrix",
     .reference = "AnisoMPM sections 3, 4.3; METHOD.md section 2", .parameters = parameters, .parameter_count = KEY_COUNT,
-    .fields = fields, .field_count = 4, .measures = measures, .measure_count = 3, .resolve = resolve, .needs = "elastic",
+    .fields = fields, .field_count = 4, .measures = measures, .measure_count = 3, .resolve = resolve, .needs = ELASTICITY,
     .stages = &stages,
 };

@@ -4,20 +4,17 @@
  * F = QR; Σ r_ij² = |F|², so no decomposition is needed. Because cof F Fᵀ = J I, the Kirchhoff stress is
  *     τ = P Fᵀ = μ F Fᵀ + (λ (J − 1) − μ) J I.
  * Polynomial: defined for every F, inverted ones included. Damage scales Ψμ always and Ψλ only in tension (J ≥ 1). */
+#include "solid/moduli.h"
 #include "solid/tensor.h"
 
 enum { MU, LAMBDA };
-enum { KEY_E, KEY_NU, KEY_LAME };
 
 static void constants(const effect_values *all, const solid_definition *d, bool protects, real out[CONSTANTS]) {
     (void)d, (void)protects;
-    const effect_values *own = &all[EFFECT_elastic];
-    double E = own->value[KEY_E][0], nu = own->value[KEY_NU][0];
-    double mu = E / (2 * (1 + nu)), lame = E * nu / ((1 + nu) * (1 - 2 * nu));
-    bool consistent = own->value[KEY_LAME][0] == 0;
+    double mu = 0, lambda = 0, lame_lambda;
+    solid_elastic_moduli(all, &mu, &lambda, &lame_lambda);
     out[MU] = (real)mu;
-    /* Linearised, this energy is μ ε:ε + (λ − μ)/2 (tr ε)²: the extra μ makes (E, ν) mean what they say. */
-    out[LAMBDA] = (real)(consistent ? lame + mu : lame);
+    out[LAMBDA] = (real)lambda;
 }
 
 /* g where the λ term is in tension, 1 where it is in compression. */
@@ -83,11 +80,11 @@ static void energy(tile_work *w) {
 static const char *const lame_choices[] = {"consistent", "paper", NULL};
 
 static const parameter parameters[] = {
-    [KEY_E] = {.key = "E", .unit = "mass/(length time^2)", .doc = "Young's modulus of the matrix", .minimum = 1e-12,
+    [ELASTIC_KEY_E] = {.key = "E", .unit = "mass/(length time^2)", .doc = "Young's modulus of the matrix", .minimum = 1e-12,
                .maximum = 1e18, .fallback = {1e4}, .live = true, .logarithmic = true, .required = true},
-    [KEY_NU] = {.key = "nu", .unit = "1", .doc = "Poisson's ratio", .minimum = -0.999, .maximum = 0.4999, .fallback = {0.3},
+    [ELASTIC_KEY_NU] = {.key = "nu", .unit = "1", .doc = "Poisson's ratio", .minimum = -0.999, .maximum = 0.4999, .fallback = {0.3},
                 .live = true},
-    [KEY_LAME] = {.key = "lame", .unit = "1", .doc = "consistent: (E, nu) is the linear response; paper: plain Lamé lambda",
+    [ELASTIC_KEY_LAME] = {.key = "lame", .unit = "1", .doc = "consistent: (E, nu) is the linear response; paper: plain Lamé lambda",
                   .kind = PARAMETER_CHOICE, .maximum = 1, .choices = lame_choices, .live = true},
 };
 
@@ -100,5 +97,5 @@ static const solid_stages stages = {.constants = constants, .stress = stress, .w
 const effect SOLID_EFFECT(elastic) = {
     .name = "elastic", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "isotropic elasticity of the matrix",
     .reference = "AnisoMPM section 5; METHOD.md section 1", .parameters = parameters, .parameter_count = 3,
-    .measures = measures, .measure_count = 1, .stages = &stages,
+    .measures = measures, .measure_count = 1, .provides = ELASTICITY, .stages = &stages,
 };

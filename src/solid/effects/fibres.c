@@ -2,6 +2,7 @@
  *
  * Ψf = Σ_k k_k/2 (ℓ_k − 1)², ℓ_k = |F a_k|, k_k = γ_k μ  (AnisoMPM §5, METHOD.md §1). τ = Σ k_k (1 − 1/ℓ_k) (F a_k)(F a_k)ᵀ.
  * Never degraded by the matrix' damage: fibres part, they do not tear. */
+#include "solid/moduli.h"
 #include "solid/tensor.h"
 
 enum { K1, K2 };
@@ -10,7 +11,8 @@ enum { KEY_GAMMA, KEY_GAMMA2 };
 
 static void constants(const effect_values *all, const solid_definition *d, bool protects, real out[CONSTANTS]) {
     (void)d, (void)protects;
-    double mu = all[EFFECT_elastic].value[0][0] / (2 * (1 + all[EFFECT_elastic].value[1][0]));
+    double mu = 0, lambda, lame_lambda;
+    solid_elastic_moduli(all, &mu, &lambda, &lame_lambda);
     out[K1] = (real)(mu * all[EFFECT_fibres].value[KEY_GAMMA][0]);
     out[K2] = (real)(mu * all[EFFECT_fibres].value[KEY_GAMMA2][0]);
 }
@@ -100,5 +102,5 @@ static const solid_stages stages = {.constants = constants, .stress = stress, .w
 const effect SOLID_EFFECT(fibres) = {
     .name = "fibres", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "stiffness along fibre directions",
     .reference = "AnisoMPM section 5; METHOD.md section 1", .parameters = parameters, .parameter_count = 2,
-    .fields = fields, .field_count = 2, .measures = measures, .measure_count = 1, .needs = "elastic", .stages = &stages,
+    .fields = fields, .field_count = 2, .measures = measures, .measure_count = 1, .needs = ELASTICITY, .stages = &stages,
 };

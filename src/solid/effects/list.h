@@ -3,8 +3,10 @@
 #define SUNDER_SOLID_EFFECTS_LIST_H
 
 #define SOLID_EFFECT_LIST(X)                                                                                           \
-    X(damage)  /* degrades first, so that forces see g(d) */                                                           \
+    X(plastic) /* moves F first, so that damage sees what is left */                                                   \
+    X(damage)  /* degrades before forces, which see g(d) */                                                            \
     X(elastic)                                                                                                         \
+    X(corotated) /* or this: a material has one elastic model */                                                       \
     X(fibres)                                                                                                          \
     X(gravity)                                                                                                         \
     X(boundary) /* last word on the grid's velocities */

@@ -1,0 +1,124 @@
+/* Elasticity of the matrix, fixed-corotated: a second model, chosen instead of `elastic` (METHOD.md §1).
+ *
+ * Ψμ + Ψλ = μ |F − R|² + λ/2 (J − 1)², F = R S (Stomakhin et al. 2012). With the axes n_i and stretches s_i of b = F Fᵀ, V = √b:
+ *     τ = P Fᵀ = 2μ (b − V) + λ (J − 1) J I = Σ (2μ s_i (s_i − 1) + λ (J − 1) J) n_i n_iᵀ.
+ * R is a rotation always: where J < 0 the smallest s_i counts as negative (of equal ones, some one). Then Ψμ = μ (|F|² − 2 max_R R:F + 3)
+ * for every F, continuous through collapse, and an inverted particle is driven back along its thinnest axis.
+ * The plain Lamé λ gives (E, ν) as the linear response. Damage scales Ψμ always and Ψλ only in tension (J ≥ 1), as in `elastic`. */
+#include "base/eigen.h"
+#include "solid/moduli.h"
+#include "solid/stretch.h"
+
+enum { MU, LAMBDA, WAVE_LAMBDA };
+
+static void constants(const effect_values *all, const solid_definition *d, bool protects, real out[CONSTANTS]) {
+    (void)d, (void)protects;
+    double mu = 0, lambda = 0, lame_lambda;
+    solid_elastic_moduli(all, &mu, &lambda, &lame_lambda);
+    out[MU] = (real)mu;
+    out[LAMBDA] = (real)lambda;
+    out[WAVE_LAMBDA] = (real)fmax(lambda, 0); /* negative where nu is: then it stiffens no wave */
+}
+
+/* g₊ λ: g in tension, 1 in compression. */
+SIMD_INLINE vec degraded_lambda(vec J, vec g, real lambda) {
+    return lambda * vec_select(J >= 1, g, vec_all(1));
+}
+
+/* The s_i, one of the smallest negated where J < 0. */
+SIMD_INLINE vec3v signed_stretches(vec3v square, vec J) {
+    vec3v s = {vec_sqrt(square.x), vec_sqrt(square.y), vec_sqrt(square.z)};
+    vec_mask inverted = J < 0, x_least = (s.x <= s.y) & (s.x <= s.z), y_least = ~x_least & (s.y <= s.z);
+    return (vec3v){vec_select(inverted & x_least, -s.x, s.x), vec_select(inverted & y_least, -s.y, s.y),
+                   vec_select(inverted & ~x_least & ~y_least, -s.z, s.z)};
+}
+
+static void stress(tile_work *w) {
+    const solid_field *F_field = &w->state->fields[FIELD_DEFORMATION];
+    real mu = w->constants[MU], lambda = w->constants[LAMBDA];
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            mat3v F = mat3v_load(F_field, w->tile->first_pack + k, part);
+            vec g = vec_load(scratch_at(w->scratch->degradation, 1, k, 0, part));
+            vec J = mat3v_determinant(F), shear = 2 * mu * g, pressure = degraded_lambda(J, g, lambda) * (J - 1) * J;
+            stretch3v stretch = mat3v_stretch(F, mat3v_gram(F));
+            vec3v s = signed_stretches(stretch.square, J), n1 = stretch.first, n2 = stretch.second, n3 = stretch.third;
+            vec t1 = vec_fma(shear * s.x, s.x - 1, pressure), t2 = vec_fma(shear * s.y, s.y - 1, pressure),
+                t3 = vec_fma(shear * s.z, s.z - 1, pressure);
+            real *tau = w->scratch->kirchhoff;
+            vec_store(scratch_at(tau, 6, k, 0, part), vec_fma(t1 * n1.x, n1.x, vec_fma(t2 * n2.x, n2.x, t3 * n3.x * n3.x)));
+            vec_store(scratch_at(tau, 6, k, 1, part), vec_fma(t1 * n1.y, n1.y, vec_fma(t2 * n2.y, n2.y, t3 * n3.y * n3.y)));
+            vec_store(scratch_at(tau, 6, k, 2, part), vec_fma(t1 * n1.z, n1.z, vec_fma(t2 * n2.z, n2.z, t3 * n3.z * n3.z)));
+            vec_store(scratch_at(tau, 6, k, 3, part), vec_fma(t1 * n1.x, n1.y, vec_fma(t2 * n2.x, n2.y, t3 * n3.x * n3.y)));
+            vec_store(scratch_at(tau, 6, k, 4, part), vec_fma(t1 * n1.y, n1.z, vec_fma(t2 * n2.y, n2.z, t3 * n3.y * n3.z)));
+            vec_store(scratch_at(tau, 6, k, 5, part), vec_fma(t1 * n1.x, n1.z, vec_fma(t2 * n2.x, n2.z, t3 * n3.x * n3.z)));
+        }
+}
+
+/* ρ0 c² ≤ 2 g μ |F|₂² + g₊ λ J². A wave along n polarised along a varies F by D = a (Fᵀ n)ᵀ. Of Ψμ = μ (|F|² − 2 max_R R:F + 3) the first
+ * term's second variation is 2μ |D|² ≤ 2μ |F|₂²; the second term is a maximum of linear functions, convex, and enters with a
+ * minus: it never adds. J is linear along D, and cof F : D = J a·n, so Ψλ gives λ J² (a·n)². At rest the bound is λ + 2μ: sharp. */
+static void wave(tile_work *w) {
+    const solid_field *F_field = &w->state->fields[FIELD_DEFORMATION];
+    real mu = w->constants[MU], lambda = w->constants[WAVE_LAMBDA];
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            mat3v F = mat3v_load(F_field, w->tile->first_pack + k, part);
+            vec g = vec_load(scratch_at(w->scratch->degradation, 1, k, 0, part));
+            vec J = mat3v_determinant(F);
+            vec shear = 2 * mu * g * sym3v_largest_bound(mat3v_gram(F)), bulk = degraded_lambda(J, g, lambda) * J * J;
+            real *modulus = scratch_at(w->scratch->wave_modulus, 1, k, 0, part);
+            vec_store(modulus, vec_load(modulus) + shear + bulk);
+        }
+}
+
+/* Σ (s_i − 1)², with the sign convention of the stress. */
+static double corotated_square(const double F[9], double J) {
+    double b[9], value[3], axis[3][3], sum = 0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) b[3 * i + j] = F[3 * i] * F[3 * j] + F[3 * i + 1] * F[3 * j + 1] + F[3 * i + 2] * F[3 * j + 2];
+    eigen_symmetric(b, value, axis); /* descending: the third is the smallest */
+    for (int i = 0; i < 3; i++) {
+        const double *n = axis[i];
+        double pulled[3], s;
+        for (int c = 0; c < 3; c++) pulled[c] = F[c] * n[0] + F[3 + c] * n[1] + F[6 + c] * n[2];
+        s = sqrt(pulled[0] * pulled[0] + pulled[1] * pulled[1] + pulled[2] * pulled[2]);
+        if (J < 0 && i == 2) s = -s;
+        sum += (s - 1) * (s - 1);
+    }
+    return sum;
+}
+
+/* In f64 particle by particle, as in `elastic`. */
+static void energy(tile_work *w) {
+    const solid_field *F_field = &w->state->fields[FIELD_DEFORMATION];
+    double mu = (double)w->constants[MU], lambda = (double)w->constants[LAMBDA];
+    for (int p = 0; p < w->tile->count; p++) {
+        int k = p / PACK, lane = p % PACK;
+        double F[9];
+        for (int c = 0; c < 9; c++) F[c] = (double)field_at(F_field, w->tile->first_pack + k, c, 0)[lane];
+        double J = F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+        double g = (double)w->scratch->degradation[k * PACK + lane], g_volume = J >= 1 ? g : 1;
+        double density = g * mu * corotated_square(F, J) + g_volume * 0.5 * lambda * (J - 1) * (J - 1);
+        w->energy[0] += density * (double)field_at(&w->state->fields[FIELD_VOLUME], w->tile->first_pack + k, 0, 0)[lane];
+    }
+}
+
+static const parameter parameters[] = {
+    [ELASTIC_KEY_E] = {.key = "E", .unit = "mass/(length time^2)", .doc = "Young's modulus of the matrix", .minimum = 1e-12,
+                       .maximum = 1e18, .fallback = {1e4}, .live = true, .logarithmic = true, .required = true},
+    [ELASTIC_KEY_NU] = {.key = "nu", .unit = "1", .doc = "Poisson's ratio", .minimum = -0.999, .maximum = 0.4999, .fallback = {0.3},
+                        .live = true},
+};
+
+static const effect_measure measures[] = {
+    {"elastic", "mass length^2/time^2", "stored energy of the matrix"},
+};
+
+static const solid_stages stages = {.constants = constants, .stress = stress, .wave = wave, .energy = energy};
+
+const effect SOLID_EFFECT(corotated) = {
+    .name = "corotated", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "fixed-corotated elasticity of the matrix, instead of elastic",
+    .reference = "Stomakhin et al. 2012; METHOD.md section 1", .parameters = parameters, .parameter_count = 2,
+    .measures = measures, .measure_count = 1, .provides = ELASTICITY, .stages = &stages,
+};

@@ -3,7 +3,8 @@
  * A bar of 4 × 1 × 1, E = 100, ν = 0.3, τy = 1 hardening by 10 (so that it stretches evenly), is pulled by its ends to a stretch over 1.1
  * and let go. F is what the flow leaves, the elastic part; the shape is in the positions:
  *     elastic stretch 1 + √1.5 (τy + 10 p)/E (2e-3),   whole stretch that times exp(√⅔ p) (3e-3).
- * After the release the elastic part is gone and the length and the volume stay; nothing flows any more. In f32 it is the same bar to 2e-3. Damage with σc = 6 beside it never sees a stress that the flow has relaxed; without flow the bar breaks. */
+ * After the release the elastic part is gone, length and volume stay, and nothing flows any more. In f32 it is the same bar to 2e-3.
+ * Damage with σc = 6 beside it never sees a stress that the flow has relaxed; without flow the bar breaks. */
 #include "check.h"
 #include "verify/solid_scene.h"
 

@@ -1,0 +1,35 @@
+# Plasticity, the corotated model, and the kernels' own mathematics.
+sunder_test(plasticity ${CMAKE_SOURCE_DIR}/tests/verify/test_plasticity.c sunder_solid)
+target_sources(test_plasticity PRIVATE ${CMAKE_SOURCE_DIR}/tests/verify/plasticity_f32.c)
+sunder_test(plastic_bar ${CMAKE_SOURCE_DIR}/tests/verify/test_plastic_bar.c sunder_sim)
+sunder_test(corotated ${CMAKE_SOURCE_DIR}/tests/verify/test_corotated.c sunder_solid)
+sunder_test(corotated_body ${CMAKE_SOURCE_DIR}/tests/verify/test_corotated_body.c sunder_sim)
+
+# A header of inline functions: one program a precision and instruction set, skipped where the processor lacks it.
+set(MATH_SIMD plain)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  list(APPEND MATH_SIMD avx2 avx512)
+endif()
+set(MATH_FLAGS_plain -DSUNDER_SIMD=0)
+set(MATH_FLAGS_avx2 -DSUNDER_SIMD=1 -mavx2 -mfma)
+set(MATH_FLAGS_avx512 -DSUNDER_SIMD=2 -mavx512f -mavx512dq -mavx512bw -mavx512vl -mfma)
+foreach(simd ${MATH_SIMD})
+  foreach(precision 32 64)
+    set(name simd_math_f${precision}_${simd})
+    sunder_test(${name} ${CMAKE_SOURCE_DIR}/tests/unit/test_simd_math.c sunder_base)
+    target_compile_options(test_${name} PRIVATE -DSUNDER_PRECISION=${precision} ${MATH_FLAGS_${simd}})
+    set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77)
+  endforeach()
+endforeach()
+
+# Not a test: how long a stress takes.
+foreach(precision 32 64)
+  add_library(bench_constitutive_f${precision} OBJECT ${CMAKE_SOURCE_DIR}/tests/bench/constitutive_kernels.c)
+  target_include_directories(bench_constitutive_f${precision} PRIVATE ${CMAKE_SOURCE_DIR}/tests)
+  target_compile_definitions(bench_constitutive_f${precision} PRIVATE SUNDER_PRECISION=${precision})
+  target_link_libraries(bench_constitutive_f${precision} PRIVATE sunder_solid)
+endforeach()
+add_executable(bench_constitutive ${CMAKE_SOURCE_DIR}/tests/bench/constitutive.c $<TARGET_OBJECTS:bench_constitutive_f32>
+               $<TARGET_OBJECTS:bench_constitutive_f64>)
+target_include_directories(bench_constitutive PRIVATE ${CMAKE_SOURCE_DIR}/tests)
+target_link_libraries(bench_constitutive PRIVATE sunder_solid)

@@ -16,7 +16,9 @@ static const command commands[] = {
     {"runs", "runs list | show RUN | diff RUN RUN [--db FILE] [--json]", "ask the ledger about past runs", command_runs},
     {"render", "render RUN [--frame N] [--out FILE.png] [--width N] [--height N] [--yaw D] [--pitch D] [--zoom PERCENT]", "draw a frame", command_render},
     {"doctor", "doctor [--json]", "say what this machine and this build can do", command_doctor},
-    {"help", "help", "list the commands", command_help},
+    {"bench", "bench step [--json] [--csv FILE] [--full] [--case NAME]… [--particles N] [--threads N] [--precision f32|f64] [--seconds S] [--repeat N]",
+     "measure how fast steps are, beside what the machine could do", command_bench},
+    {"help", "help [effects]", "list the commands, or all effects with their parameters", command_help},
 };
 
 const command *command_table(int *count) {
@@ -71,15 +73,6 @@ int cli_number(const char *name, const char *option, const char *text, long low,
     *value = strtol(text, &end, 10);
     if (end != text && *end == '\0' && errno == 0 && *value >= low && *value <= high) return 0;
     return cli_usage(name, "%s %s: expected a whole number from %ld to %ld", option, text, low, high);
-}
-
-int command_help(int count, char **arguments) {
-    (void)count, (void)arguments;
-    puts("sunder: a terminal workbench for tearing things\n");
-    for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
-        printf("  sunder %s\n      %s\n", commands[i].usage, commands[i].help);
-    puts("\nExit codes: 0 done; 1 the simulation failed; 2 the input is wrong; 130 interrupted.");
-    return 0;
 }
 
 static int unknown_command(const char *name) {

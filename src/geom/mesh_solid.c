@@ -1,16 +1,38 @@
 #include "geom/mesh_solid.h"
 
+#include "geom/mesh_far.h"
 #include "geom/mesh_tree.h"
 #include "geom/vector.h"
 
 #include <string.h>
 
+enum { FAR_CELLS_LEAST = 12, FAR_CELLS_MOST = 64 };
+
 struct mesh_solid {
     mesh_tree tree;
     mesh_columns columns;
+    mesh_far far;
     int64_t vertices;
     double *vertex; // [vertices][3]
 };
+
+static double exact_distance(const void *context, const double x[3]) {
+    const mesh_solid *s = context;
+    double distance = mesh_tree_distance(&s->tree, x);
+    return mesh_columns_inside(&s->columns, x) ? -distance : distance;
+}
+
+/* Cells about as wide as three triangles: within the distances that the samples leave to it, the exact search is fast. */
+static bool sample_far(arena *a, mesh_solid *s) {
+    double low[3], high[3];
+    for (int c = 0; c < 3; c++) {
+        low[c] = s->tree.center[c] - s->tree.half[c];
+        high[c] = s->tree.center[c] + s->tree.half[c];
+    }
+    double cells = sqrt((double)s->tree.triangles) / 2.5;
+    int wanted = (int)fmin(fmax(cells, FAR_CELLS_LEAST), FAR_CELLS_MOST);
+    return mesh_far_create(a, low, high, wanted, exact_distance, s, &s->far);
+}
 
 const mesh_solid *mesh_solid_create(arena *a, const mesh *m) {
     mesh_solid *s = arena_allocate(a, sizeof *s);
@@ -20,12 +42,12 @@ const mesh_solid *mesh_solid_create(arena *a, const mesh *m) {
     s->vertex = arena_allocate(a, bytes);
     if (!s->vertex) return NULL;
     memcpy(s->vertex, m->vertex, bytes);
-    return s;
+    return sample_far(a, s) ? s : NULL;
 }
 
 double mesh_solid_distance(const mesh_solid *s, const double x[3]) {
-    double distance = mesh_tree_distance(&s->tree, x);
-    return mesh_columns_inside(&s->columns, x) ? -distance : distance;
+    double distance;
+    return mesh_far_distance(&s->far, x, &distance) ? distance : exact_distance(s, x);
 }
 
 double mesh_solid_support(const mesh_solid *s, const double direction[3]) {

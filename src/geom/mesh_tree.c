@@ -14,9 +14,6 @@ static const float BOX_MARGIN = 1e-6f;
 /* Relative: what it may lose of a distance. */
 static const double DISTANCE_MARGIN = 1e-5;
 
-/* In units of the tree: further away the box stands for the mesh. */
-static const double FAR = 1e6;
-
 /* Squared sine of the angle at a triangle's first corner: below it s and t (triangle_squared) are mostly round-off, and the
  * sides stand for the triangle. */
 static const double NEEDLE = 1e-12;
@@ -193,9 +190,14 @@ bool mesh_tree_create(arena *a, const mesh *m, mesh_tree *out) {
 
 /* ---- asking ------------------------------------------------------------------------------------------------------ */
 
+/* Not fmin, which is a call: the numbers are never NaN. */
+static inline double lesser(double a, double b) {
+    return a < b ? a : b;
+}
+
 static double along_edge(const double offset[3], const double edge[3]) {
-    double length_squared = vector_dot(edge, edge);
-    double t = length_squared > 0.0 ? fmin(fmax(vector_dot(offset, edge) / length_squared, 0.0), 1.0) : 0.0;
+    double along = vector_dot(offset, edge), length_squared = vector_dot(edge, edge);
+    double t = along <= 0.0 ? 0.0 : along >= length_squared ? 1.0 : along / length_squared;
     double d[3] = {offset[0] - t * edge[0], offset[1] - t * edge[1], offset[2] - t * edge[2]};
     return vector_dot(d, d);
 }
@@ -214,11 +216,11 @@ static double triangle_squared(const double d[3], const double e[3], const doubl
     }
     double nearest = HUGE_VAL, opposite[3], from_e[3];
     if (needle || s <= 0.0) nearest = along_edge(d, f);
-    if (needle || t <= 0.0) nearest = fmin(nearest, along_edge(d, e));
+    if (needle || t <= 0.0) nearest = lesser(nearest, along_edge(d, e));
     if (!needle && s + t < area) return nearest;
     vector_subtract(f, e, opposite);
     vector_subtract(d, e, from_e);
-    return fmin(nearest, along_edge(from_e, opposite));
+    return lesser(nearest, along_edge(from_e, opposite));
 }
 
 typedef struct waiting {
@@ -226,16 +228,21 @@ typedef struct waiting {
     int32_t branch;
 } waiting;
 
+typedef int32_t four_flags __attribute__((vector_size(TREE_WIDTH * sizeof(int32_t))));
+
+static tree_four greater(tree_four a, tree_four b) {
+    four_flags first = a > b;
+    return (tree_four)((first & (four_flags)a) | (~first & (four_flags)b));
+}
+
 /* Squared distances from a point to the four boxes of a branch. */
-static void box_distances(const tree_branch *b, const float x[3], float out[TREE_WIDTH]) {
-    for (int k = 0; k < TREE_WIDTH; k++) out[k] = 0.0f;
-    for (int c = 0; c < 3; c++)
-        for (int k = 0; k < TREE_WIDTH; k++) {
-            float below = b->low[c][k] - x[c], above = x[c] - b->high[c][k];
-            float outside = below > above ? below : above;
-            outside = outside > 0.0f ? outside : 0.0f;
-            out[k] += outside * outside;
-        }
+static tree_four box_distances(const tree_branch *b, const float x[3]) {
+    tree_four squared = {0};
+    for (int c = 0; c < 3; c++) {
+        tree_four beyond = greater(greater(b->low[c] - x[c], x[c] - b->high[c]), (tree_four){0});
+        squared += beyond * beyond;
+    }
+    return squared;
 }
 
 /* Where a squared length stands among squared lengths in single precision and the tree's units: never too low. */
@@ -247,7 +254,7 @@ static double leaf_squared(const mesh_tree *t, int32_t first, int32_t count, con
     for (int32_t i = first; i < first + count; i++) {
         double d[3];
         vector_subtract(x, t->corner[i][0], d);
-        nearest = fmin(nearest, triangle_squared(d, t->corner[i][1], t->corner[i][2]));
+        nearest = lesser(nearest, triangle_squared(d, t->corner[i][1], t->corner[i][2]));
     }
     return nearest;
 }
@@ -257,7 +264,7 @@ static double leaf_squared(const mesh_tree *t, int32_t first, int32_t count, con
 static double nearest_squared(const mesh_tree *t, const double x[3]) {
     waiting stack[STACK];
     int depth = 0;
-    float place[3], distance[TREE_WIDTH], limit = HUGE_VALF;
+    float place[3], limit = HUGE_VALF;
     double nearest = HUGE_VAL;
     for (int c = 0; c < 3; c++) place[c] = (float)((x[c] - t->center[c]) / t->unit);
     stack[depth++] = (waiting){0.0f, 0};
@@ -265,7 +272,7 @@ static double nearest_squared(const mesh_tree *t, const double x[3]) {
         waiting next = stack[--depth];
         if (next.distance > limit) continue;
         const tree_branch *b = &t->branch[next.branch];
-        box_distances(b, place, distance);
+        tree_four distance = box_distances(b, place);
         int base = depth;
         for (int k = 0; k < TREE_WIDTH; k++) {
             if (b->count[k] < 0 || distance[k] > limit) continue;
@@ -283,8 +290,5 @@ static double nearest_squared(const mesh_tree *t, const double x[3]) {
 }
 
 double mesh_tree_distance(const mesh_tree *t, const double x[3]) {
-    double beyond[3];
-    for (int c = 0; c < 3; c++) beyond[c] = fmax(fabs(x[c] - t->center[c]) - t->half[c], 0.0);
-    double outside = vector_length(beyond);
-    return outside > FAR * t->unit ? outside : sqrt(nearest_squared(t, x));
+    return sqrt(nearest_squared(t, x));
 }

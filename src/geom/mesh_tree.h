@@ -8,17 +8,19 @@
 
 enum { TREE_WIDTH = 4, TREE_LEAF = 4 };
 
+/* The same thing of four boxes. */
+typedef float tree_four __attribute__((vector_size(TREE_WIDTH * sizeof(float))));
+
 /* Up to four boxes, in single precision and in units of the tree's `unit` from its center: widened by more than the
  * rounding, so that a box never seems further away than it is. */
 typedef struct tree_branch {
-    float low[3][TREE_WIDTH], high[3][TREE_WIDTH];
+    tree_four low[3], high[3];
     int32_t child[TREE_WIDTH]; /* a branch, or where count > 0 the first of that many triangles */
     int32_t count[TREE_WIDTH]; /* 0: a branch; −1: nothing */
 } tree_branch;
 
 typedef struct mesh_tree {
-    double center[3], unit, reach; /* reach: half the box's diagonal */
-    double half[3];                /* of the box */
+    double center[3], half[3], unit; /* of the mesh's box; unit: half its diagonal */
     int64_t triangles;
     tree_branch *branch;
     double (*corner)[3][3]; // [triangles]: a corner and the edges to the two others, in the order of the leaves
@@ -27,7 +29,7 @@ typedef struct mesh_tree {
 /* False when memory is out. */
 bool mesh_tree_create(arena *a, const mesh *m, mesh_tree *out);
 
-/* The distance to the nearest triangle, ≥ 0. */
+/* The distance from a point within some thousands of units to the nearest triangle, ≥ 0. */
 double mesh_tree_distance(const mesh_tree *t, const double x[3]);
 
 /* A triangle as a column sees it: across the lines in whole numbers, along them as it is. */

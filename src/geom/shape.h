@@ -3,7 +3,7 @@
  * A shape is an immutable tree in an arena; nothing is freed one by one. Constructors return NULL when memory is out,
  * when a child is NULL or when the tree would be deeper than SHAPE_DEPTH_LIMIT (functions on trees recurse), so that a
  * whole expression can be checked once, and assert on sizes that are not positive (the script floor validates them
- * first). Distances are exact for primitives and a bound for unions, intersections and differences: never further from
+ * first). Distances are exact for primitives (for meshes: near the surface) and a bound elsewhere: never further from
  * zero than the true distance, which is what lets volumes and samples skip cells far from the surface. */
 #ifndef SUNDER_GEOM_SHAPE_H
 #define SUNDER_GEOM_SHAPE_H
@@ -36,8 +36,8 @@ const shape *shape_torus(arena *a, const double center[3], const double axis[3],
  * its normal is a coordinate axis. */
 const shape *shape_half_space(arena *a, const double point[3], const double normal[3]);
 /* The inside of a mesh that mesh_make_solid has accepted; the mesh and its name (for shape_describe) are copied into the
- * arena. Pieces that overlap are one solid, of which the distance inside is a bound; a piece turned inward within
- * another is a cavity. */
+ * arena. The distance is exact near the surface and a bound further off. Pieces that overlap are one solid; a piece
+ * turned inward within another is a cavity. */
 const shape *shape_mesh(arena *a, const mesh *m, const char *name);
 /* children has shape [count], count ≥ 1; copied into the arena. */
 const shape *shape_union(arena *a, const shape *const *children, int count);

@@ -83,7 +83,7 @@ static status check_alternatives(const scene_material *m, const effect *const *e
         int other = find_supplier(m, effects[e]->provides, e + 1);
         if (other < 0) continue;
         char expected[128], found[128];
-        snprintf(expected, sizeof expected, "one of '%s' and '%s' (both are %s)", effects[e]->name, effects[other]->name, effects[e]->provides);
+        snprintf(expected, sizeof expected, "one of '%s' and '%s' (each provides %s)", effects[e]->name, effects[other]->name, effects[e]->provides);
         snprintf(found, sizeof found, "both in the material '%.60s'", m->name);
         return report_input(r, m->file, m->line, effects[other]->name, expected, found, NULL);
     }

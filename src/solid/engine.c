@@ -169,6 +169,9 @@ static status sort(solid *s, report *r) {
 static status solve_effects(solid *s, real dt, report *r) {
     for (int e = 0; e < s->effect_count; e++) {
         if (!(s->mask >> e & 1) || !effects[e]->stages->solve) continue;
+        bool done = false; /* one solve serves all damage models */
+        for (int before = 0; before < e; before++) done |= (s->mask >> before & 1) && effects[before]->stages->solve == effects[e]->stages->solve;
+        if (done) continue;
         status code = effects[e]->stages->solve(s, dt, r);
         if (code != STATUS_OK) return code;
     }

@@ -315,6 +315,7 @@ static void apply_operator(solid *s) {
 }
 
 status implicit_solve(solid *s, real dt, report *r) {
+    if (!s->implicit_on) return STATUS_OK;
     over_slots(s, clear_planes, s);
     by_colour(s, dt, s->definition.laplacian == KERNEL_CUBIC ? system_cubic : system_quadratic);
     double right, square, rho, next, curvature, unused;

@@ -66,7 +66,7 @@ static void measure_tile(void *context, int64_t i, int worker) {
     m->elastic = w.energy[0];
     m->fibre = w.energy[1];
     double inertia = s->definition.dx * s->definition.dx / (s->definition.kernel == KERNEL_QUADRATIC ? 4 : 3);
-    bool damaged = s->material_mask[w.tile->material] >> EFFECT_damage & 1;
+    bool damaged = s->material_damaged[w.tile->material];
     for (int p = 0; p < w.tile->count; p++) {
         add_particle(s, w.tile, p, inertia, m);
         if (damaged) add_damage(s, w.tile, p, m);

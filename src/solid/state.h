@@ -98,7 +98,7 @@ struct solid {
     uint32_t material_mask[SOLID_MATERIALS];
     bool transfers_damage; /* some material has the damage effect */
     bool implicit_on;      /* some material's damage is implicit */
-    bool material_implicit[SOLID_MATERIALS];
+    bool material_damaged[SOLID_MATERIALS], material_implicit[SOLID_MATERIALS]; /* by whichever damage model */
     implicit_material implicit_materials[SOLID_MATERIALS];
     double implicit_tolerance;
     int64_t implicit_solves, implicit_iterations;

@@ -196,7 +196,7 @@ SIMD_INLINE void block_to_grid(transfer_context *t, int32_t block_index, int wor
         }
         momentum_records(&w, kernel, density, 1);
         scatter_momentum(&w, nodes, own->window);
-        if (damage && s->material_mask[w.tile->material] >> EFFECT_damage & 1)
+        if (damage && s->material_damaged[w.tile->material])
             scatter_damage(&w, laplacian, laplacian == KERNEL_QUADRATIC ? 3 : 4, own->damage_window);
     }
     exchange_window(b, own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, true);
@@ -421,7 +421,7 @@ SIMD_INLINE void block_to_particles(transfer_context *t, int32_t block_index, in
         memset(w.result, 0, sizeof *w.result);
         if (damage && s->material_implicit[w.tile->material])
             implicit_gather(&w, own->implicit_window);
-        else if (damage && s->material_mask[w.tile->material] >> EFFECT_damage & 1)
+        else if (damage && s->material_damaged[w.tile->material])
             gather_laplacian(&w, laplacian, laplacian == KERNEL_QUADRATIC ? 3 : 4, own->damage_window);
         gather_weights(&w, kernel);
         if (s->old_grid) {

@@ -193,7 +193,53 @@ static void no_viscosity_is_the_rate_independent_limit(void) {
     CHECK_ROW("METHOD 2", "implicit, uniform driving force 3, eta 0: d after one step", 0.75, driven_damage(true, 0, 1e-3, 1), 1e-6);
 }
 
+/* A cube held at F = s I under the phase field: d = K/(1 + K), K = 4 l0 (1 − r) Ψ⁺/G, one solve after Ψ⁺ is known; with a mobility M, after
+ * n steps of Δt, d = K/(1 + K) (1 − (1 + (1 + K) M Δt)⁻ⁿ) (backward Euler of ċ = −M × residual). */
+static double phase_field_damage(double stretch, double mobility, int steps) {
+    scene *s = test_scene(cube, 10, 0.3, 1e6); /* heavy: it does not move within the steps */
+    s->particles = 1000;
+    test_set(s, "pff", "toughness", 2);
+    test_set(s, "pff", "length_scale", 0.05);
+    test_set(s, "pff", "mobility", mobility);
+    test_set(s, "pff", "residual", 0.02);
+    test_set(s, "pff", "tolerance", 1e-12);
+    simulation *sim = test_simulation(s, 64, "auto", 2);
+    solid *state;
+    const solid_engine *engine = simulation_engine(sim, &state);
+    record_list saved = {0};
+    report r;
+    CHECK(engine->save(state, &saved, &r) == STATUS_OK);
+    record *F = record_find(&saved, "solid/deformation_gradient");
+    for (int64_t n = 0; n < F->count * F->components; n++) ((double *)F->data)[n] *= stretch;
+    CHECK(engine->restore(state, &saved, &r) == STATUS_OK);
+    for (int i = 0; i < steps + 1; i++) CHECK(simulation_step(sim, 1e-6, &r) == STATUS_OK);
+    simulation_measures m;
+    simulation_measure(sim, &m, &r);
+    record_clear(&saved);
+    simulation_destroy(sim);
+    scene_destroy(s);
+    return m.solid.damage_mean;
+}
+
+static double phase_field_driving(double stretch) {
+    double mu = 10 / 2.6, lambda = 10 * 0.3 / (1.3 * 0.4) + mu, J = stretch * stretch * stretch;
+    double energy = 1.5 * mu * (stretch * stretch - 1) - mu * (J - 1) + (J >= 1 ? 0.5 * lambda * (J - 1) * (J - 1) : 0);
+    return 4 * 0.05 * 0.98 * fmax(energy, 0) / 2; /* Ψμ alone can fall below 0 in compression: no drive */
+}
+
+static void the_phase_field_is_its_closed_form(void) {
+    static const double stretches[] = {1.1, 0.9};
+    for (int i = 0; i < 2; i++) {
+        double K = phase_field_driving(stretches[i]);
+        CHECK_ROW("METHOD 2", i ? "phase field (PFF), uniform squeeze 0.9: d" : "phase field (PFF), uniform stretch 1.1: d", K / (1 + K),
+                  phase_field_damage(stretches[i], 0, 1), 1e-6);
+    }
+    double K = phase_field_driving(1.1), expected = K / (1 + K) * (1 - pow(1 + (1 + K) * 2e5 * 1e-6, -5));
+    CHECK_ROW("METHOD 2", "phase field (PFF), mobility 2e5, five steps: d", expected, phase_field_damage(1.1, 2e5, 5), 1e-6);
+}
+
 int main(void) {
+    RUN(the_phase_field_is_its_closed_form);
     RUN(a_band_relaxes_to_its_exponential);
     RUN(the_operator_is_symmetric_positive_definite);
     RUN(explicit_and_implicit_agree);

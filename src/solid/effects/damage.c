@@ -44,16 +44,13 @@ static void constants(const effect_values *all, const solid_definition *d, bool 
 /* The implicit form is solved on the grid for all materials at once, to the strictest of their tolerances. */
 static void declare(solid *s, int material, const effect_values *all) {
     const effect_values *own = &all[EFFECT_damage];
+    s->material_damaged[material] = true;
     s->material_implicit[material] = own->value[KEY_FORM][0] != 0;
     if (!s->material_implicit[material]) return;
     double length = own->value[KEY_LENGTH_SCALE][0] > 0 ? own->value[KEY_LENGTH_SCALE][0] : 0.5 * s->definition.dx;
     s->implicit_on = true;
     s->implicit_materials[material] = (implicit_material){(real)own->value[KEY_ETA][0], (real)(length * length)};
     s->implicit_tolerance = fmin(s->implicit_tolerance, own->value[KEY_TOLERANCE][0]);
-}
-
-static status solve(solid *s, real dt, report *r) {
-    return s->implicit_on ? implicit_solve(s, dt, r) : STATUS_OK;
 }
 
 /* g(d) = (1 − d)² (1 − r) + r */
@@ -309,11 +306,11 @@ static const effect_measure measures[] = {
     {"broken_fraction", "1", "fraction of particles over 0.9"},
 };
 
-static const solid_stages stages = {.constants = constants, .declare = declare, .degrade = degrade, .solve = solve, .update = update};
+static const solid_stages stages = {.constants = constants, .declare = declare, .degrade = degrade, .solve = implicit_solve, .update = update};
 
 const effect SOLID_EFFECT(damage) = {
     .name = "damage", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "anisotropic damage of the matrix",
     .reference = "AnisoMPM sections 3, 4.3; METHOD.md section 2", .parameters = parameters, .parameter_count = KEY_COUNT,
-    .fields = fields, .field_count = 4, .measures = measures, .measure_count = 3, .resolve = resolve, .needs = ELASTICITY,
+    .fields = fields, .field_count = 4, .measures = measures, .measure_count = 3, .provides = "damage model", .resolve = resolve, .needs = ELASTICITY,
     .stages = &stages,
 };

@@ -5,6 +5,7 @@
 #define SOLID_EFFECT_LIST(X)                                                                                           \
     X(plastic) /* moves F first, so that damage sees what is left */                                                   \
     X(damage)  /* degrades before forces, which see g(d) */                                                            \
+    X(pff)     /* or this: a material has one damage model */                                                          \
     X(elastic)                                                                                                         \
     X(corotated) /* or this: a material has one elastic model */                                                       \
     X(fibres)                                                                                                          \

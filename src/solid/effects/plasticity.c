@@ -2,7 +2,8 @@
  *
  * With F = U Σ Vᵀ and ε = log Σ, a particle yields where 2μ |dev ε| > τy + h p (Frobenius norm; μ undegraded, p the plastic
  * strain so far); its deviator is then scaled back so that equality holds, p grows by what the deviator lost, and
- * F ← U exp(ε) Vᵀ. That runs after F has advanced and before damage looks at it.
+ * F ← U exp(ε) Vᵀ. That runs after F has advanced and before damage looks at it. F is from then on the elastic part of the
+ * deformation; the rest is in the particles' positions.
  *
  * It is done as F ← F + Σ (exp(Δε_i) − 1) n_i (Fᵀ n_i)ᵀ, with the axes n_i of b = F Fᵀ: V is not needed, det F is unchanged because
  * Σ Δε_i = 0, and rounding is in proportion to the return, not to F. The same formula stands where F is not
@@ -65,7 +66,7 @@ SIMD_INLINE vec return_to_surface(mat3v *F, sym3v b, vec limit, real hardening) 
     vec norm = vec_sqrt(vec3v_dot(deviator, deviator)), excess = norm - limit;
     vec_mask yields = excess > 0;
     /* After the flow Δp: norm − Δp = limit + h Δp. */
-    vec flow = vec_select(yields, excess * (1 / (1 + hardening)), vec_all(0)), share = vec_select(yields, -flow / norm, vec_all(0));
+    vec flow = excess * (1 / (1 + hardening)), share = -flow / norm;
     mat3v moved = *F;
     add_dyad(&moved, vec_expm1(share * deviator.x), s.first, s.pulled_first);
     add_dyad(&moved, vec_expm1(share * deviator.y), s.second, s.pulled_second);
@@ -73,7 +74,7 @@ SIMD_INLINE vec return_to_surface(mat3v *F, sym3v b, vec limit, real hardening) 
     *F = (mat3v){vec_select(yields, moved.xx, F->xx), vec_select(yields, moved.xy, F->xy), vec_select(yields, moved.xz, F->xz),
                  vec_select(yields, moved.yx, F->yx), vec_select(yields, moved.yy, F->yy), vec_select(yields, moved.yz, F->yz),
                  vec_select(yields, moved.zx, F->zx), vec_select(yields, moved.zy, F->zy), vec_select(yields, moved.zz, F->zz)};
-    return flow;
+    return vec_select(yields, flow, vec_all(0));
 }
 
 static void update(tile_work *w) {

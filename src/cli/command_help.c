@@ -1,0 +1,81 @@
+/* sunder help: the commands; sunder help effects: the reference of all effects, made from their tables. */
+#include "cli/cli.h"
+
+#include "sim/scene.h"
+
+#include <math.h>
+#include <string.h>
+
+static void print_value(const parameter *p, double value) {
+    if (p->kind == PARAMETER_CHOICE) printf("%s", p->choices[(int)value]);
+    else if (p->kind == PARAMETER_BOOLEAN) printf("%s", value != 0 ? "true" : "false");
+    else printf("%g", value);
+}
+
+static void print_default(const parameter *p) {
+    if (p->required && !p->twin) {
+        printf("required");
+    } else if (p->required || p->twin) {
+        printf("this or `%s`", p->twin);
+    } else if (p->kind == PARAMETER_VECTOR) {
+        printf("{%g, %g, %g}", p->fallback[0], p->fallback[1], p->fallback[2]);
+    } else {
+        print_value(p, p->fallback[0]);
+    }
+}
+
+static void print_range(const parameter *p) {
+    if (p->kind == PARAMETER_CHOICE) {
+        for (int i = 0; p->choices[i]; i++) printf("%s%s", i ? ", " : "", p->choices[i]);
+    } else if (p->kind == PARAMETER_BOOLEAN) {
+        printf("true, false");
+    } else {
+        printf("%g … %g", p->minimum, p->maximum);
+    }
+}
+
+static void print_parameters(const effect *e) {
+    puts("| key | unit | default | range | live | |\n|---|---|---|---|---|---|");
+    for (int i = 0; i < e->parameter_count; i++) {
+        const parameter *p = &e->parameters[i];
+        printf("| `%s` | %s | ", p->key, p->unit);
+        print_default(p);
+        printf(" | ");
+        print_range(p);
+        printf(" | %s | %s |\n", p->live ? "yes" : "no", p->doc);
+    }
+    putchar('\n');
+}
+
+static void print_effect(const effect *e) {
+    printf("## %s\n\n%s. %s; %s.\n\n", e->name, e->doc, e->scope == SCOPE_MATERIAL ? "Of a material" : "Of the scene", e->reference);
+    if (e->needs) printf("Needs: %s.\n\n", e->needs);
+    if (e->provides) printf("Provides: %s; a material has at most one effect that does.\n\n", e->provides);
+    if (e->parameter_count > 0) print_parameters(e);
+    if (e->field_count > 0) puts("| field | components | unit | in frames | |\n|---|---|---|---|---|");
+    for (int i = 0; i < e->field_count; i++) {
+        const effect_field *f = &e->fields[i];
+        printf("| `%s` | %d | %s | %s | %s |\n", f->key, f->components, f->unit, f->written ? "yes" : "no", f->doc);
+    }
+    if (e->field_count > 0) putchar('\n');
+}
+
+static int print_effects(void) {
+    int count;
+    const effect *const *effects = effect_catalogue(&count);
+    puts("# Effects\n\nMade by `sunder help effects` from the effects' own tables. Naming an effect in a material or a scene turns it on;\n"
+         "one that nobody names takes no memory and no time.\n");
+    for (int i = 0; i < count; i++) print_effect(effects[i]);
+    return 0;
+}
+
+int command_help(int count, char **arguments) {
+    if (count == 2 && strcmp(arguments[1], "effects") == 0) return print_effects();
+    if (count > 1) return cli_usage("help", "expected nothing, or 'effects'");
+    int commands;
+    const command *table = command_table(&commands);
+    puts("sunder: a terminal workbench for tearing things\n");
+    for (int i = 0; i < commands; i++) printf("  sunder %s\n      %s\n", table[i].usage, table[i].help);
+    puts("\nExit codes: 0 done; 1 the simulation failed; 2 the input is wrong; 130 interrupted.");
+    return 0;
+}

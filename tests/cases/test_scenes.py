@@ -1,0 +1,311 @@
+#!/usr/bin/env python3
+"""The mechanics of the solid paper's figures, at reduced size: what breaks, in which direction, which variant does not.
+
+Usage: test_scenes.py SUNDER SOURCE_DIR [NAME...]   Each run works in a scratch folder and with a ledger of its own.
+Directions come from the gradient of damage at rest, as the summary's crack_normal does; here also for plates that are
+thinner than three cells, and in polar coordinates. Frames are read through the HDF5 library that the program itself uses.
+"""
+import ctypes, glob, json, math, os, re, shutil, sqlite3, subprocess, sys, tempfile
+
+SUNDER, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+failures, checks = [], 0
+
+
+def check(condition, text):
+    global checks
+    checks += 1
+    if not condition:
+        failures.append(text)
+        print("  failed:", text)
+
+
+class Frames:
+    """Reads a run's frames; rest positions by particle id."""
+
+    def __init__(self):
+        listed = subprocess.run(["ldd", SUNDER], capture_output=True, text=True).stdout
+        self.h5 = ctypes.CDLL(re.search(r"=> (\S*libhdf5\S*)", listed).group(1))
+        self.h5.H5open()
+        whole = ctypes.c_int64
+        for name, result, arguments in (("H5Fopen", whole, [ctypes.c_char_p, ctypes.c_uint, whole]), ("H5Dopen2", whole, [whole, ctypes.c_char_p, whole]),
+                                        ("H5Dget_space", whole, [whole]), ("H5Sget_simple_extent_npoints", whole, [whole]),
+                                        ("H5Dread", ctypes.c_int, [whole] * 5 + [ctypes.c_void_p]), ("H5Dclose", ctypes.c_int, [whole]),
+                                        ("H5Sclose", ctypes.c_int, [whole]), ("H5Fclose", ctypes.c_int, [whole])):
+            function = getattr(self.h5, name)
+            function.restype, function.argtypes = result, arguments
+        self.double = whole.in_dll(self.h5, "H5T_NATIVE_DOUBLE_g").value
+
+    def read(self, run, frame, name):
+        h5 = self.h5
+        file = h5.H5Fopen(os.path.join(run["out"], "frames", f"{frame:06d}.hdf").encode(), 0, 0)
+        data = h5.H5Dopen2(file, f"/solid/{name}".encode(), 0)
+        space = h5.H5Dget_space(data)
+        values = (ctypes.c_double * h5.H5Sget_simple_extent_npoints(space))()
+        if min(file, data, space, h5.H5Dread(data, self.double, 0, 0, 0, values)) < 0:
+            raise OSError(f"{run['out']}: frame {frame}: {name}")
+        h5.H5Sclose(space), h5.H5Dclose(data), h5.H5Fclose(file)
+        return list(values)
+
+    def places(self, run, frame):
+        values = self.read(run, frame, "position")
+        return dict(zip(map(int, self.read(run, frame, "id")), zip(values[0::3], values[1::3], values[2::3])))
+
+    def damaged(self, run):
+        """[(rest position, d)] at the last frame."""
+        rest, last = self.places(run, 0), run["frames"]
+        return [(rest[int(i)], d) for i, d in zip(self.read(run, last, "id"), self.read(run, last, "damage"))]
+
+
+class Box:
+    """A scratch folder with its own ledger."""
+
+    def __enter__(self):
+        self.folder, self.count = tempfile.mkdtemp(prefix="sunder-scenes-"), 0
+        self.db = os.path.join(self.folder, "ledger.db")
+        self.environment = dict(os.environ, SUNDER_DB=self.db, XDG_DATA_HOME=os.path.join(self.folder, "data"))
+        return self
+
+    def __exit__(self, *_):
+        shutil.rmtree(self.folder)
+
+    def call(self, *arguments):
+        done = subprocess.run([SUNDER, *arguments], env=self.environment, cwd=self.folder, stdin=subprocess.DEVNULL, capture_output=True,
+                              text=True, timeout=600)
+        return done.returncode, done.stdout, done.stderr
+
+    def run(self, scene, frames, particles, **settings):
+        """A finished run's summary; its dx beside it."""
+        self.count += 1
+        chosen = [part for key, value in dict(particles=particles, **settings).items() for part in ("--set", f"{key}={value}")]
+        path = os.path.join(SOURCE, f"scenes/solid/{scene}.lua")
+        limit = ["--frames", str(frames)] if frames else []
+        code, out, err = self.call("run", path, *chosen, *limit, "--out", os.path.join(self.folder, f"run{self.count}"), "--json", "--quiet")
+        if code:
+            raise RuntimeError(f"{scene} {settings}: exit code {code}: {err.strip()[-300:]}")
+        summary = json.loads(out)
+        summary["dx"] = json.loads(self.call("explain", path, *chosen, "--json")[1])["dx"]
+        return summary
+
+    def series(self, run, name):
+        with sqlite3.connect(self.db) as connection:
+            return [v for v, in connection.execute("SELECT value FROM measures_view WHERE id = ? AND name = ? ORDER BY frame", (run["run_id"], name))]
+
+
+frames = Frames()
+
+
+def between(a, b):
+    """Degrees between two lines."""
+    dot = abs(sum(p * q for p, q in zip(a, b)))
+    return math.degrees(math.acos(min(1, dot / math.hypot(*a) / math.hypot(*b))))
+
+
+def turned(run, expected):
+    """Degrees between the summary's crack normal and the expected one; 90 without a crack."""
+    return between(run["crack_normal"], expected) if run["crack_normal"] else 90.0
+
+
+def broken(run):
+    return (run["damage"] or {}).get("broken_fraction") or 0.0
+
+
+def gradients(points, spacing, axes):
+    """[(place, gradient of mean damage)] on a grid over the given axes, where both neighbours along each hold particles."""
+    cells = {}
+    for place, d in points:
+        cell = cells.setdefault(tuple(math.floor(place[a] / spacing) for a in axes), [0.0, 0])
+        cell[0] += d
+        cell[1] += 1
+    mean, out = {key: total / count for key, (total, count) in cells.items()}, []
+    for key in mean:
+        sides = [[tuple(k + (side if a == axis else 0) for a, k in enumerate(key)) for side in (1, -1)] for axis in range(len(axes))]
+        if all(side in mean for pair in sides for side in pair):
+            out.append(([(k + 0.5) * spacing for k in key], [(mean[plus] - mean[minus]) / (2 * spacing) for plus, minus in sides]))
+    return out
+
+
+def plate(run, keep=lambda place: True, spacing=None):
+    """Gradients of damage over the faces of a plate that lies across z."""
+    return [(place, g) for place, g in gradients(frames.damaged(run), spacing or run["dx"], (0, 1)) if keep(place)]
+
+
+def principal(pairs):
+    """The line along which pairs (u, v) mostly point."""
+    uu, vv, uv = (sum(f(u, v) for u, v in pairs) for f in (lambda u, v: u * u, lambda u, v: v * v, lambda u, v: u * v))
+    angle = 0.5 * math.atan2(2 * uv, uu - vv)
+    return math.cos(angle), math.sin(angle)
+
+
+def polar(pairs):
+    """Sums of squares of the gradient away from the axis and around it."""
+    outwards = around = 0.0
+    for (x, y), (gx, gy) in pairs:
+        r = math.hypot(x, y)
+        outwards += ((gx * x + gy * y) / r) ** 2
+        around += ((gy * x - gx * y) / r) ** 2
+    return outwards, around
+
+
+def test_every_scene_is_right():
+    with Box() as box:
+        for path in sorted(glob.glob(os.path.join(SOURCE, "scenes/solid/*.lua"))):
+            code, out, err = box.call("check", path)
+            check(code == 0, f"{os.path.basename(path)}: {out} {err}")
+
+
+def test_tube_pull():
+    slant, across = (-1, 1, 0), (1, 0, 0)
+    with Box() as box:
+        runs = {v: box.run("tube_pull", None, 3000, variant=v) for v in ("full", "isotropic", "damage_only", "elastic_only")}
+        print("  degrees from the fibres' tear, from across:", {v: (round(turned(r, slant)), round(turned(r, across))) for v, r in runs.items()})
+        check(turned(runs["full"], slant) < 15, f"full tears along the fibres: {runs['full']['crack_normal']}")
+        check(turned(runs["isotropic"], across) < 10, f"isotropic tears across: {runs['isotropic']['crack_normal']}")
+        check(turned(runs["full"], slant) < turned(runs["damage_only"], slant), "damage alone is guided more weakly")
+        check(broken(runs["elastic_only"]) == 0 and runs["elastic_only"]["crack_normal"] is None, "without damage nothing is broken")
+
+
+def test_disk_shoot():
+    with Box() as box:
+        ring = lambda place: 0.15 < math.hypot(*place) < 0.36
+        found = {}
+        for variant, expected in (("vertical", (1, 0)), ("horizontal", (0, 1)), ("diagonal", (-1, 1))):
+            run = box.run("disk_shoot", 60, 6000, variant=variant)
+            normal = principal([g for _, g in plate(run, ring)])
+            found[variant] = round(between(normal, expected))
+            check(broken(run) > 0.02, f"{variant} breaks")
+            check(between(normal, expected) < 15, f"{variant}: the slit follows the fibres: {normal}")
+        share = {}
+        for variant in ("radial", "circumferential", "isotropic"):
+            run = box.run("disk_shoot", 60, 6000, variant=variant)
+            outwards, around = polar(plate(run, ring))
+            share[variant] = around / (outwards + around)
+        print("  degrees off:", found, " share of damage's gradient around the axis:", {v: round(a, 2) for v, a in share.items()})
+        check(share["radial"] > 0.65, f"radial fibres, cracks along the spokes: {share}")
+        check(share["circumferential"] < 0.15, f"circumferential fibres, a round lid: {share}")
+        check(share["circumferential"] < share["isotropic"] < share["radial"], f"no fibres, between: {share}")
+
+
+def test_meat():
+    with Box() as box:
+        run, minced = box.run("meat", None, 4000), box.run("meat", None, 4000, alpha=0, gamma=0)
+        print("  grain:", turned(run, (1, 0, -1)), "minced:", turned(minced, (1, 0, 0)))
+        check(max(box.series(run, "broken_fraction")[:12]) == 0, "whole until the puller starts")
+        check(turned(run, (1, 0, -1)) < 15, f"the tear follows the grain: {run['crack_normal']}")
+        check(turned(minced, (1, 0, 0)) < turned(minced, (1, 0, -1)), f"without a grain it tears across the pull: {minced['crack_normal']}")
+
+
+def test_pork_belly():
+    with Box() as box:
+        layer, strip, piece = (box.run("pork_belly", 80, 14000, speed=0.15, variant=v) for v in ("orthotropic", "transverse", "isotropic"))
+        print("  broken:", [round(broken(r), 3) for r in (layer, strip, piece)], "normals:", [[round(c, 2) for c in r["crack_normal"]] for r in (layer, strip, piece)])
+        check(turned(layer, (0, 1, 0)) < 10, f"orthotropic peels along the layers: {layer['crack_normal']}")
+        check(between(strip["crack_normal"], (1, 0, 0)) > 75, f"transverse: no tear across the fibres: {strip['crack_normal']}")
+        check(broken(layer) > 2 * broken(strip) > 4 * broken(piece) > 0, "a layer, a strip, a piece")
+
+
+def test_orange():
+    with Box() as box:
+        run = box.run("orange", None, 5000)
+        flesh = [(place, d) for place, d in frames.damaged(run) if math.hypot(place[0], place[2]) < 0.15]
+        pairs = gradients(flesh, run["dx"], (0, 2))
+        outwards, around = polar([(place, g) for place, g in pairs if math.hypot(*place) > 0.04])
+        print("  share around the core:", round(around / (outwards + around), 2), "broken:", round(broken(run), 3))
+        check(broken(run) > 0.01, "it tears")
+        check(around > 2 * outwards, f"along its radial walls: {outwards} {around}")
+
+
+def test_cheese():
+    with Box() as box:
+        run, bread = (box.run("cheese", 120, 8000, ball=0.02, ways=4, **more) for more in ({}, {"alpha": 0, "gamma": 0}))
+        print("  normal", run["crack_normal"], "broken", round(broken(run), 3), "bread", bread["crack_normal"], round(broken(bread), 3))
+        check(turned(run, (0, 1, 0)) > 75, f"strands part along the stick: {run['crack_normal']}")
+        reach = [min(y for (_, y, _), d in frames.damaged(r) if d > 0.9) for r in (run, bread)]
+        print("  lowest broken height, with strands and without:", reach)
+        check(reach[0] < 0.15, f"the peel runs over half of the stick: {reach}")
+        check(reach[0] < reach[1] - 0.05, f"without strands it tears off at the top: {reach}")
+
+
+def test_notched_block():
+    slant = (-1, 1, 0)
+    with Box() as box:
+        soft = box.run("sigma_eta", 144, 4000)
+        tough = box.run("sigma_eta", 144, 4000, break_stretch=0.3)
+        slow = box.run("sigma_eta", 144, 4000, eta=0.5)
+        start = [next((i for i, v in enumerate(box.series(r, "damage_max")) if v > 0.5), None) for r in (soft, tough, slow)]
+        print("  degrees off the fibres:", round(turned(soft, slant)), " frame of the first crack:", start, " broken:", [round(broken(r), 3) for r in (soft, tough, slow)])
+        check(turned(soft, slant) < 15, f"the crack follows the fibres: {soft['crack_normal']}")
+        check(start[0] is not None and (start[1] is None or start[1] > start[0]), f"a larger sigma_c breaks later: {start}")
+        check(broken(slow) < broken(soft), "a larger eta cracks more slowly")
+
+
+def test_implicit_and_explicit():
+    slant = (-1, 1, 0)
+    with Box() as box:
+        fast, slow = (box.run("implicit_explicit", 72, 4000, form=form) for form in ("implicit", "explicit"))
+        flood = box.run("implicit_explicit", 64, 4000, form="explicit", eta=1e-9)
+        print("  off the fibres:", round(turned(fast, slant)), round(turned(slow, slant)), " broken:", [round(broken(r), 3) for r in (fast, slow, flood)])
+        check(turned(fast, slant) < 15, f"implicit at eta 1e-9 follows the fibres: {fast['crack_normal']}")
+        check(turned(slow, slant) < 15, f"explicit at eta 1e-3 follows the fibres: {slow['crack_normal']}")
+        check(broken(fast) > broken(slow) > 0, "a smaller eta runs further in the same time")
+        check(broken(fast) < 0.2, "and stays a crack")
+
+
+def test_damage_disk():
+    with Box() as box:
+        found = {}
+        for laplacian in ("quadratic", "cubic"):
+            for form in ("explicit", "implicit"):
+                run = box.run("damage_disk", 48, 4000, laplacian=laplacian, form=form)
+                normal = principal([g for _, g in plate(run, lambda place: abs(place[0]) < 0.12 and place[1] < 0.1)])
+                found[laplacian, form] = round(between(normal, (1, 0))), round(broken(run), 3)
+                check(between(normal, (1, 0)) < 15, f"{laplacian}, {form}: straight down from the notch: {normal}")
+                check(broken(run) > 0.02, f"{laplacian}, {form}: it tears")
+        print("  degrees off, broken:", found)
+        shares = [b for _, b in found.values()]
+        check(max(shares) < 1.5 * min(shares), f"the four ways break about as much: {found}")
+
+
+def test_disk_tear():
+    with Box() as box:
+        tilt = math.radians(20)
+        along = (math.cos(tilt), math.sin(tilt))
+        normals = {}
+        for variant in ("fibres", "isotropic"):
+            run = box.run("disk_tear", 48, 4000, variant=variant)
+            normals[variant] = principal([g for _, g in plate(run, lambda place: abs(place[0]) < 0.2 and place[1] < 0.1)])
+        print("  normals:", {v: [round(c, 2) for c in n] for v, n in normals.items()})
+        check(between(normals["fibres"], along) < 12, f"along the fibres: {normals}")
+        check(between(normals["isotropic"], (1, 0)) < 12, f"square to the pull: {normals}")
+
+
+def test_elastic_tube():
+    with Box() as box:
+        width = {}
+        for variant in ("isotropic", "transverse", "orthotropic"):
+            run = box.run("elastic_tube", None, 4000, variant=variant)
+            rest, last = frames.places(run, 0), frames.places(run, run["frames"])
+            middle = [i for i in rest if abs(rest[i][0]) < 0.2]
+            width[variant] = [math.sqrt(sum(last[i][c] ** 2 for i in middle) / sum(rest[i][c] ** 2 for i in middle)) for c in (1, 2)]
+            check("damage" not in run["effects"], f"{variant}: nothing breaks")
+        print("  height and width left:", {v: [round(c, 3) for c in w] for v, w in width.items()})
+        plain, one, two = width["isotropic"], width["transverse"], width["orthotropic"]
+        check(abs(plain[0] - plain[1]) < 0.01, f"isotropic: equally narrow: {plain}")
+        check(one[1] > plain[1] + 0.05 and one[1] > one[0] + 0.1, f"transverse: less compression along the fibres: {one}")
+        check(two[1] > two[0] + 0.05 and two[0] > one[0] + 0.02, f"orthotropic: the second family too: {two} {one}")
+
+
+def main():
+    wanted = sys.argv[3:]
+    for name, test in list(globals().items()):
+        if name.startswith("test_") and (not wanted or name in wanted):
+            before = len(failures)
+            try:
+                test()
+            except (RuntimeError, OSError, TypeError) as error:
+                check(False, f"{name}: {error}")
+            print("ok  " if len(failures) == before else "FAIL", name, flush=True)
+    print(f"{checks} checks, {len(failures)} failed")
+    sys.exit(1 if failures or not checks else 0)
+
+
+main()

@@ -49,7 +49,12 @@ return s.scene {
   transfer_ratio = 0.01,
 
   solids = {
-    { name = "disk", shape = disk - notch, material = material, fibres = s.fibres.direction { -math.sin(along), math.cos(along), 0 } },
+    {
+      name     = "disk",
+      shape    = disk - notch,
+      material = material,
+      fibres   = s.fibres.direction { -math.sin(along), math.cos(along), 0 },
+    },
   },
   grips = { hand(-1), hand(1) },
 }

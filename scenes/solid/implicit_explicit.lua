@@ -22,7 +22,7 @@ local p = s.params {
   pull      = { 0.35, unit = "length/time", doc = "speed of each plate", min = 0 },
   until_t   = { 0.8, unit = "time", doc = "when the plates stop", min = 0 },
   angle     = { 45, unit = "degrees", doc = "of the fibres from the notch", min = -90, max = 90 },
-  notch     = { 0.08, unit = "length", doc = "depth of the notch in the left face", min = 0, max = 0.4 },
+  notch     = { 0.10, unit = "length", doc = "depth of the notch in the left face", min = 0, max = 0.4 },
   form      = s.choice { "implicit", "explicit" },
 }
 
@@ -30,7 +30,7 @@ local eta = ({ implicit = 1e-9, explicit = 1e-3 })[p.form]
 
 local tilt = math.rad(p.angle)
 local block = s.box { size = { 0.4, 0.44, 0.2 } }
-local notch = s.box { min = { -1, -0.012, -1 }, max = { p.notch - 0.2, 0.012, 1 } }
+local notch = s.box { min = { -1, -0.018, -1 }, max = { p.notch - 0.2, 0.018, 1 } }
 
 local function plate(side)
   return {

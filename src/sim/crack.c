@@ -38,33 +38,37 @@ static void average(cell_grid *g, const double *rest, const double *damage, int6
         if (g->weight[i] > 0) g->sum[i] /= g->weight[i];
 }
 
-/* Central differences where both neighbours hold particles; a cell without all six says nothing. */
-static bool gradient(const cell_grid *g, const int64_t at[3], double out[3]) {
+/* Central differences where both neighbours hold particles; a cell without all six says nothing, unless `thin`: then an axis that
+ * lacks a neighbour counts as flat, for plates under three cells thick. */
+static bool gradient(const cell_grid *g, const int64_t at[3], bool thin, double out[3]) {
     const int64_t stride[3] = {g->size[1] * g->size[2], g->size[2], 1};
     int64_t cell = at[0] * stride[0] + at[1] * stride[1] + at[2];
     if (g->weight[cell] == 0) return false;
     for (int c = 0; c < 3; c++) {
-        if (at[c] == 0 || at[c] == g->size[c] - 1) return false;
-        if (g->weight[cell - stride[c]] == 0 || g->weight[cell + stride[c]] == 0) return false;
-        out[c] = (g->sum[cell + stride[c]] - g->sum[cell - stride[c]]) / (2 * g->spacing);
+        bool inside = at[c] > 0 && at[c] < g->size[c] - 1 && g->weight[cell - stride[c]] > 0 && g->weight[cell + stride[c]] > 0;
+        if (!inside && !thin) return false;
+        out[c] = !inside ? 0 : (g->sum[cell + stride[c]] - g->sum[cell - stride[c]]) / (2 * g->spacing);
     }
     return true;
 }
 
-static void principal(const cell_grid *g, double normal[3]) {
+/* False when no gradient is seen. */
+static bool principal(const cell_grid *g, bool thin, double normal[3]) {
     double tensor[9] = {0}, value[3], vector[3][3], d[3];
     int64_t at[3];
     for (at[0] = 0; at[0] < g->size[0]; at[0]++)
         for (at[1] = 0; at[1] < g->size[1]; at[1]++)
             for (at[2] = 0; at[2] < g->size[2]; at[2]++)
-                if (gradient(g, at, d))
+                if (gradient(g, at, thin, d))
                     for (int i = 0; i < 9; i++) tensor[i] += d[i / 3] * d[i % 3];
     eigen_symmetric(tensor, value, vector);
+    if (!(value[0] > 0)) return false;
     int largest = 0;
     for (int c = 1; c < 3; c++)
         if (fabs(vector[0][c]) > fabs(vector[0][largest])) largest = c;
     double sign = vector[0][largest] < 0 ? -1 : 1;
     for (int c = 0; c < 3; c++) normal[c] = sign * vector[0][c];
+    return true;
 }
 
 status crack_normal(const double *rest, const double *damage, int64_t count, double spacing, double normal[3], bool *found,
@@ -81,7 +85,7 @@ status crack_normal(const double *rest, const double *damage, int64_t count, dou
     status code = STATUS_OK;
     if (g.sum && g.weight) {
         average(&g, rest, damage, count);
-        principal(&g, normal);
+        *found = principal(&g, false, normal) || principal(&g, true, normal);
     } else {
         code = report_set(r, STATUS_SYSTEM, "out of memory for the crack measure");
     }

@@ -247,9 +247,13 @@ static status choose_step(simulation *s, double left, int64_t *steps_left, doubl
         return STATUS_OK;
     }
     double needed = ceil(left / least - 1e-9);
-    if (!(needed <= STEPS_LIMIT))
-        return report_set(r, STATUS_DIVERGED, "step %lld, t = %.6g: the effect '%s' limits the time step to %.3g, %.3g steps for the rest of the frame",
-                          (long long)s->steps + 1, s->time, which >= 0 ? s->engine->effects[which]->name : "?", least, needed);
+    if (!(needed <= STEPS_LIMIT)) {
+        const char *name = which >= 0 ? s->engine->effects[which]->name : "?";
+        bool damage = strcmp(name, "damage") == 0;
+        return report_set(r, STATUS_DIVERGED, "step %lld, t = %.6g: the effect '%s' limits the time step to %.3g, %.3g steps for the rest of the frame%s",
+                          (long long)s->steps + 1, s->time, name, least, needed,
+                          damage ? "; damage in its implicit form (form = \"implicit\") has no such limit" : "");
+    }
     if (needed < 1) needed = 1;
     if (*steps_left == 0 || (double)*steps_left < needed) *steps_left = (int64_t)needed;
     *dt = left / (double)*steps_left;

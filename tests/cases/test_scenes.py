@@ -241,13 +241,32 @@ def test_notched_block():
 def test_implicit_and_explicit():
     slant = (-1, 1, 0)
     with Box() as box:
-        fast, slow = (box.run("implicit_explicit", 72, 4000, form=form) for form in ("implicit", "explicit"))
-        flood = box.run("implicit_explicit", 64, 4000, form="explicit", eta=1e-9)
+        fast, slow = (box.run("implicit_explicit", 72, 8000, form=form) for form in ("implicit", "explicit"))
+        flood = box.run("implicit_explicit", 72, 8000, form="explicit", eta=1e-9)
         print("  off the fibres:", round(turned(fast, slant)), round(turned(slow, slant)), " broken:", [round(broken(r), 3) for r in (fast, slow, flood)])
         check(turned(fast, slant) < 15, f"implicit at eta 1e-9 follows the fibres: {fast['crack_normal']}")
         check(turned(slow, slant) < 15, f"explicit at eta 1e-3 follows the fibres: {slow['crack_normal']}")
         check(broken(fast) > broken(slow) > 0, "a smaller eta runs further in the same time")
         check(broken(fast) < 0.2, "and stays a crack")
+
+
+def test_bone():
+    with Box() as box:
+        axis, runs, tilt = (0, 1, 0), {}, {}
+        for variant in ("twist", "pull", "bend"):
+            run = runs[variant] = box.run("bone", 36, 8000, variant=variant)
+            # Damage's gradient in the shaft's skin: along the axis and around it. A spiral slants it the same way all around.
+            pairs = []
+            for (x, y, z), (gx, gy, gz) in gradients(frames.damaged(run), 1.3 * run["dx"], (0, 1, 2)):
+                if abs(y) < 0.12 and math.hypot(x, z) > 0.008:
+                    pairs.append((gy, (gz * x - gx * z) / math.hypot(x, z)))
+            tilt[variant] = between(principal(pairs), (1, 0))
+            check(broken(run) > 0.01, f"{variant} breaks")
+        print("  degrees of the spiral:", {v: round(a) for v, a in tilt.items()}, " of the normal from the axis:",
+              {v: round(turned(r, axis)) for v, r in runs.items()})
+        check(20 < tilt["twist"] < 60, f"twist: a spiral: {tilt}")
+        check(tilt["pull"] < 10 and turned(runs["pull"], axis) < 20, f"pull: straight across: {tilt} {runs['pull']['crack_normal']}")
+        check(tilt["bend"] < 20 and 15 < turned(runs["bend"], axis) < 60, f"bend: a slant, no spiral: {tilt} {runs['bend']['crack_normal']}")
 
 
 def test_damage_disk():

@@ -7,7 +7,7 @@
  * - objectivity and isotropy: the map of R F Q is R (the map of F) Q;
  * - repeated, tiny and vanishing singular values: finite, det F kept;
  * - linear hardening: 2μ |dev ε| = τy + h p after any step, and one long proportional step is many short ones;
- * - f32 on every instruction set against f64, 1e-5 relative.
+ * - f32 on every instruction set against f64: 4e-6.
  * What a body makes of it: test_plastic_bar.c. */
 #include "check.h"
 #include "verify/plasticity_f32.h"
@@ -351,7 +351,7 @@ static void single_precision_agrees(void) {
             }
         }
         if (built) printf("  %-6s worst difference %.1e, det %.1e\n", simds[k], worst, volume);
-        CHECK(worst < 1e-5 && volume < 1e-5);
+        CHECK(worst < 4e-6 && volume < 4e-6);
     }
     free(p);
 }

@@ -173,12 +173,14 @@ SIMD_INLINE vec history(const tile_work *w, int32_t pack, int part, vec d, vec H
 
 /* 1/Δt of the explicit update. It relaxes d towards e = (H + l0² Δd)/(1 + H) at the rate (1 + H + bound)/η and overshoots where
  * Δt times that exceeds 1; the bracket keeps the overshoot. What may be left behind is at most OVERSHOOT, so a particle near e
- * counts less, and one with 1 − e below OVERSHOOT not at all: d ≤ 1 holds it. */
+ * counts less, and one with 1 − e below OVERSHOOT not at all: d ≤ 1 holds it. A particle that nothing drives yet counts at
+ * the rate without H, so that it does not leap to d = 1 in the step in which it is first driven. */
 SIMD_INLINE vec relaxation_limit(const real *c, vec d, vec H, vec spread) {
     vec inverse = 1 / (1 + H), rest = (H + spread) * inverse, gap = rest - d;
     vec rate = (1 + H + c[LAPLACIAN_BOUND]) * c[ETA_INVERSE];
     vec_mask counts = (d < 1) & (gap > 0) & (1 - rest > OVERSHOOT);
-    return vec_select(counts, rate * gap / (gap + OVERSHOOT), vec_all(0));
+    vec undriven = vec_select((d < 1) & (H == 0), vec_all((1 + c[LAPLACIAN_BOUND]) * c[ETA_INVERSE]), vec_all(0));
+    return vec_max(vec_select(counts, rate * gap / (gap + OVERSHOOT), vec_all(0)), undriven);
 }
 
 /* The grid has solved for d; scratch->laplacian holds the increment. Then the history of the new F, for the next solve. */

@@ -1,1 +1,2 @@
 sunder_test(mesh ${CMAKE_SOURCE_DIR}/tests/unit/test_mesh.c sunder_geom)
+sunder_test(fibre_fields ${CMAKE_SOURCE_DIR}/tests/verify/test_fibre_fields.c sunder_geom)

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-enum { PARTS = 4 /* samples along each side of a cut cube */, BLOCK = 4, FIRST_CAPACITY = 1024 };
+enum { PARTS = 5 /* samples along each side of a cut cube */, BLOCK = 4, FIRST_CAPACITY = 1024 };
 
 static const double NODE_LIMIT = 8e6;
 
@@ -143,11 +143,11 @@ static void add_part(const flow_builder *b, const flow_sample *from, const bool 
     cut_part(b, b->d->body, &p, &p.share, &area, &distance, normal);
     for (int s = 0; s < FLOW_SIDES; s++) {
         double held = 0.0;
-        if (near[s]) cut_part(b, side[s], &p, &held, &area, &distance, normal);
+        if (near[s] && p.share > 0.0) cut_part(b, side[s], &p, &held, &area, &distance, normal);
         if (held > 0.0 && held < 1.0) hold(cell, matrix, s, &p, area, distance, normal);
-        free *= 1.0 - held;
+        free -= held;
     }
-    double weight = p.share * free * volume;
+    double weight = p.share * fmax(free, 0.0) * volume;
     cell->share += weight;
     for (int c = 0; c < 3; c++) cell->middle[c] += weight * p.place[c];
     add_stiffness(matrix, p.place, weight + OUTSIDE * volume);

@@ -202,6 +202,15 @@ function s.half_space(t)
   return core.shape("half_space", t)
 end
 
+--- The inside of a triangle mesh from an OBJ, PLY or STL file; `file` is a path from the scene's folder. The surface must be
+--- closed. The mesh is scaled, turned (`angle` in degrees) about the origin, and then moved so that the middle of its box
+--- comes to lie at `center`; without a center it stays where it is.
+---@param t { file: string, scale?: number, center?: Vector, rotate?: { axis: Axis, angle: number } }
+---@return Shape
+function s.mesh(t)
+  return core.mesh(t)
+end
+
 --- What is in any of the shapes. Also `a + b`.
 ---@param ... Shape|Shape[]
 ---@return Shape
@@ -288,6 +297,37 @@ end
 ---@return Fibres
 function s.fibres.helical(t)
   return core.fibres("helical", t)
+end
+
+--- Along a curve through points (closed when the last is the first): everywhere the direction that the curve has where it
+--- is nearest. `second` lays a second family, the part of that direction which is orthogonal to the first.
+---@param t { points: Vector[], second?: Axis }
+---@return Fibres
+function s.fibres.curve(t)
+  return core.fibres("curve", t)
+end
+
+--- At random within `spread` degrees of a direction (90: any), each particle for itself. The scene's seed counts if absent.
+---@param t { direction: Axis, spread: number, seed?: integer }
+---@return Fibres
+function s.fibres.random(t)
+  return core.fibres("random", t)
+end
+
+--- From rows x, y, z, dx, dy, dz of a CSV file (nine numbers: two families); `path` starts in the scene's folder.
+---@param t { path: string, method?: "nearest"|"inverse_distance" }  "nearest" if absent
+---@return Fibres
+function s.fibres.file(t)
+  return core.fibres("file", t)
+end
+
+--- Along a flow through the body, from where it overlaps `inflow` to where it overlaps `outflow`; no other surface lets it
+--- pass. `shape` is where the flow runs (the body's own if absent), `resolution` the number of cubes along its longest
+--- side (as many as make 30000 if absent). `second` as for curves.
+---@param t { inflow: Shape, outflow: Shape, shape?: Shape, resolution?: integer, second?: Axis }
+---@return Fibres
+function s.fibres.flow(t)
+  return core.fibres("flow", t)
 end
 
 return s

@@ -22,6 +22,9 @@ static const double OUTSIDE = 1e-6;
  * about the same everywhere, which turns no direction. */
 static const double PENALTY = 100.0;
 
+/* The length of a gradient interpolated from distances, 1 beside a single surface, below which it is not believed. */
+static const double AGREED = 0.8;
+
 /* Least slope of a plane along an axis in the formulas that divide by it. */
 static const double LEAST_SLOPE = 0.01;
 
@@ -87,24 +90,40 @@ typedef struct flow_sample {
     double share; /* of the part that is body */
 } flow_sample;
 
-/* Cuts the part by a shape's surface: the share inside, the surface's area (by the part's side squared) and the normal. */
-static void cut_part(const flow_builder *b, const shape *s, const flow_sample *p, double *share, double *area, double *distance,
-                     double normal[3]) {
+/* How a surface cuts a part: the share inside, the surface's area by the part's side squared, and where the surface is. */
+typedef struct part_cut {
+    double share, area, distance, normal[3]; /* distance in the part's sides */
+} part_cut;
+
+static part_cut cut_part(const flow_builder *b, const shape *s, const flow_sample *p) {
     double step = p->size * b->cells->spacing;
-    *distance = shape_distance(s, p->x) / step;
-    *share = *distance < 0.0 ? 1.0 : 0.0;
-    *area = 0.0;
-    if (fabs(*distance) >= HALF_DIAGONAL) return;
-    shape_normal(s, p->x, 0.5 * step, normal);
-    cut_cube(*distance, normal, share, area);
+    part_cut cut = {.distance = shape_distance(s, p->x) / step};
+    cut.share = cut.distance < 0.0 ? 1.0 : 0.0;
+    if (fabs(cut.distance) >= HALF_DIAGONAL) return cut;
+    shape_normal(s, p->x, 0.5 * step, cut.normal);
+    cut_cube(cut.distance, cut.normal, &cut.share, &cut.area);
+    return cut;
+}
+
+/* The body's share of a part. The normal comes from the distances at the cube's corners where they agree about it:
+ * distances to meshes are dear. */
+static double body_share(const flow_builder *b, const double corner[8], const flow_sample *p) {
+    double step = p->size * b->cells->spacing, distance = shape_distance(b->d->body, p->x) / step, normal[3] = {0, 0, 0}, area;
+    double share = distance < 0.0 ? 1.0 : 0.0, gradient[8][3];
+    if (fabs(distance) >= HALF_DIAGONAL) return share;
+    flow_gradient(p->place, gradient);
+    for (int k = 0; k < 8; k++)
+        for (int c = 0; c < 3; c++) normal[c] += corner[k] * gradient[k][c];
+    if (vector_length(normal) < AGREED) shape_normal(b->d->body, p->x, 0.5 * step, normal);
+    cut_cube(distance, normal, &share, &area);
+    return share;
 }
 
 /* Adds the penalty of a held surface within a part: φ is asked for where the surface is, not where the sample is. */
-static void hold(flow_cell *cell, double matrix[64], int side, const flow_sample *p, double area, double distance,
-                 const double normal[3]) {
-    double place[3], value[8], weight = PENALTY * area * p->share * p->size * p->size;
+static void hold(flow_cell *cell, double matrix[64], int side, const flow_sample *p, const part_cut *cut) {
+    double place[3], value[8], weight = PENALTY * cut->area * p->share * p->size * p->size;
     if (!(weight > 0.0)) return;
-    for (int c = 0; c < 3; c++) place[c] = p->place[c] - distance * normal[c] * p->size;
+    for (int c = 0; c < 3; c++) place[c] = p->place[c] - cut->distance * cut->normal[c] * p->size;
     flow_shape(place, value);
     for (int i = 0; i < 8; i++) {
         cell->held[side][i] += weight * value[i];
@@ -135,34 +154,34 @@ static bool within_held(const flow_builder *b, const double corner[3], bool near
 }
 
 /* Integrates over one part of a cut cube. */
-static void add_part(const flow_builder *b, const flow_sample *from, const bool near[FLOW_SIDES], flow_cell *cell,
+static void add_part(const flow_builder *b, const flow_sample *p, const bool near[FLOW_SIDES], flow_cell *cell,
                      double matrix[64]) {
     const shape *side[FLOW_SIDES] = {b->d->inflow, b->d->outflow};
-    flow_sample p = *from;
-    double area, distance, normal[3], free = 1.0, volume = p.size * p.size * p.size;
-    cut_part(b, b->d->body, &p, &p.share, &area, &distance, normal);
-    for (int s = 0; s < FLOW_SIDES; s++) {
-        double held = 0.0;
-        if (near[s] && p.share > 0.0) cut_part(b, side[s], &p, &held, &area, &distance, normal);
-        if (held > 0.0 && held < 1.0) hold(cell, matrix, s, &p, area, distance, normal);
-        free -= held;
+    double free = 1.0, volume = p->size * p->size * p->size;
+    for (int s = 0; s < FLOW_SIDES && p->share > 0.0; s++) {
+        if (!near[s]) continue;
+        part_cut cut = cut_part(b, side[s], p);
+        if (cut.share > 0.0 && cut.share < 1.0) hold(cell, matrix, s, p, &cut);
+        free -= cut.share;
     }
-    double weight = p.share * fmax(free, 0.0) * volume;
+    double weight = p->share * fmax(free, 0.0) * volume;
     cell->share += weight;
-    for (int c = 0; c < 3; c++) cell->middle[c] += weight * p.place[c];
-    add_stiffness(matrix, p.place, weight + OUTSIDE * volume);
+    for (int c = 0; c < 3; c++) cell->middle[c] += weight * p->place[c];
+    add_stiffness(matrix, p->place, weight + OUTSIDE * volume);
 }
 
-static void integrate(const flow_builder *b, const double corner[3], const bool near[FLOW_SIDES], flow_cell *cell,
-                      double matrix[64]) {
+/* x: where corner 0 lies; distance: the body's at the corners. */
+static void integrate(const flow_builder *b, const double x[3], const double distance[8], const bool near[FLOW_SIDES],
+                      flow_cell *cell, double matrix[64]) {
     memset(matrix, 0, 64 * sizeof *matrix);
     for (int k = 0; k < PARTS * PARTS * PARTS; k++) {
         const int part[3] = {k / (PARTS * PARTS), k / PARTS % PARTS, k % PARTS};
         flow_sample p = {.size = 1.0 / PARTS};
         for (int c = 0; c < 3; c++) {
             p.place[c] = (part[c] + 0.5) / PARTS;
-            p.x[c] = corner[c] + p.place[c] * b->cells->spacing;
+            p.x[c] = x[c] + p.place[c] * b->cells->spacing;
         }
+        p.share = body_share(b, distance, &p);
         add_part(b, &p, near, cell, matrix);
     }
     for (int c = 0; c < 3 && cell->share > 0.0; c++) cell->middle[c] /= cell->share;
@@ -221,19 +240,19 @@ static bool keep_cell(flow_cells *c, const flow_cell *made) {
 /* Adds the cube with corner 0 at a node, when it holds part of the flow. */
 static bool add_cube(const flow_builder *b, const int at[3]) {
     flow_cells *c = b->cells;
-    double nearest = HUGE_VAL, furthest = -HUGE_VAL, corner[3], matrix[64];
+    double nearest = HUGE_VAL, furthest = -HUGE_VAL, distance[8], x[3], matrix[64];
     for (int k = 0; k < 8; k++) {
-        double distance = b->distance[flow_node(c, at[0] + (k >> 2), at[1] + (k >> 1 & 1), at[2] + (k & 1))];
-        nearest = fmin(nearest, distance), furthest = fmax(furthest, distance);
+        distance[k] = b->distance[flow_node(c, at[0] + (k >> 2), at[1] + (k >> 1 & 1), at[2] + (k & 1))];
+        nearest = fmin(nearest, distance[k]), furthest = fmax(furthest, distance[k]);
     }
     if (nearest > HALF_DIAGONAL) return true;
-    for (int i = 0; i < 3; i++) corner[i] = c->origin[i] + c->spacing * at[i];
+    for (int i = 0; i < 3; i++) x[i] = c->origin[i] + c->spacing * at[i];
     bool near[FLOW_SIDES];
-    if (within_held(b, corner, near)) return true;
+    if (within_held(b, x, near)) return true;
     flow_cell cell = {.at = {at[0], at[1], at[2]}, .share = 1.0, .middle = {0.5, 0.5, 0.5}};
     if (furthest < -HALF_DIAGONAL && !near[FLOW_INFLOW] && !near[FLOW_OUTFLOW]) return keep_cell(c, &cell);
     cell.share = cell.middle[0] = cell.middle[1] = cell.middle[2] = 0.0;
-    integrate(b, corner, near, &cell, matrix);
+    integrate(b, x, distance, near, &cell, matrix);
     if (cell.share < LEAST_SHARE) return true;
     cell.matrix = (int32_t)c->matrix_count;
     return keep_matrix(c, matrix) && keep_cell(c, &cell);

@@ -10,10 +10,19 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { FILE_LIMIT = 4 * 1024 * 1024, LISTED_NAMES = 128, LISTED_SIZE = 64, COPY_DEPTH = 8, CALLER_FOLDERS = 64 };
+enum {
+    FILE_LIMIT = 4 << 20, /* bytes of a Lua file */
+    DATA_LIMIT = 1 << 30, /* bytes of a mesh or a table */
+    LISTED_NAMES = 128,
+    LISTED_SIZE = 64,
+    COPY_DEPTH = 8,
+    CALLER_FOLDERS = 64,
+    ENDING = 4, /* characters of every ending that files here have, the point included */
+};
 
 const source_file *find_source(const script *s, const char *display) {
     for (int i = 0; i < s->source_count; i++)
@@ -24,7 +33,7 @@ const source_file *find_source(const script *s, const char *display) {
 /* ---- reading ----------------------------------------------------------------------------------------------------- */
 
 /* Reads a whole regular file into the script's arena. NULL, or why it could not be read (a constant text). */
-static const char *read_whole(script *s, const char *path, const char **text, size_t *size) {
+static const char *read_whole(script *s, const char *path, off_t limit, const char **text, size_t *size) {
     int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0) return strerror(errno);
     struct stat facts;
@@ -37,8 +46,8 @@ static const char *read_whole(script *s, const char *path, const char **text, si
         trouble = "a folder";
     else if (!S_ISREG(facts.st_mode))
         trouble = "something that is no regular file";
-    else if (facts.st_size > FILE_LIMIT)
-        trouble = "a file over 4 MiB";
+    else if (facts.st_size > limit)
+        trouble = limit == FILE_LIMIT ? "a file over 4 MiB" : "a file over 1 GiB";
     else if (!(buffer = arena_allocate(s->memory, (size_t)facts.st_size + 1)))
         trouble = "no memory to read it";
     while (!trouble && used < (size_t)facts.st_size) {
@@ -52,18 +61,23 @@ static const char *read_whole(script *s, const char *path, const char **text, si
     return trouble;
 }
 
-/* Adds a file to the sources; NULL, or why it could not be read. */
-static const char *add_source(lua_State *L, const char *path, const char *name, const char *display,
-                              const source_file **out) {
+/* Adds a file of at most `limit` bytes to the sources; NULL, or why it could not be read. */
+static const char *add_file(lua_State *L, const char *path, const char *name, const char *display, off_t limit,
+                            const source_file **out) {
     script *s = script_of(L);
     if (s->source_count == SCRIPT_SOURCES) return "one file more than a scene may have";
     source_file file = {.name = arena_copy_string(s->memory, name), .display = arena_copy_string(s->memory, display)};
     if (!file.name || !file.display) throw_memory(L);
-    const char *trouble = read_whole(s, path, &file.text, &file.size);
+    const char *trouble = read_whole(s, path, limit, &file.text, &file.size);
     if (trouble) return trouble;
     s->sources[s->source_count] = file;
     *out = &s->sources[s->source_count++];
     return NULL;
+}
+
+static const char *add_source(lua_State *L, const char *path, const char *name, const char *display,
+                              const source_file **out) {
+    return add_file(L, path, name, display, FILE_LIMIT, out);
 }
 
 /* The text that Lua gets: without a byte-order mark, without a first line that starts with '#'. */
@@ -115,17 +129,22 @@ typedef struct name_list {
     char text[LISTED_NAMES][LISTED_SIZE];
 } name_list;
 
-/* Adds the names of a folder's .lua files, without the ending. */
-static void list_folder(name_list *list, const char *folder) {
+/* Adds the names of a folder's files with a given ending, without it. */
+static void list_files(name_list *list, const char *folder, const char *ending) {
     DIR *stream = opendir(folder);
     if (!stream) return;
     for (struct dirent *entry; (entry = readdir(stream)) && list->count < LISTED_NAMES;) {
         size_t length = strlen(entry->d_name);
-        if (length < 5 || length - 4 >= LISTED_SIZE || strcmp(entry->d_name + length - 4, ".lua") != 0) continue;
-        memcpy(list->text[list->count], entry->d_name, length - 4);
-        list->text[list->count++][length - 4] = '\0';
+        if (length <= ENDING || length - ENDING >= LISTED_SIZE) continue;
+        if (strcasecmp(entry->d_name + length - ENDING, ending) != 0) continue;
+        memcpy(list->text[list->count], entry->d_name, length - ENDING);
+        list->text[list->count++][length - ENDING] = '\0';
     }
     closedir(stream);
+}
+
+static void list_folder(name_list *list, const char *folder) {
+    list_files(list, folder, ".lua");
 }
 
 /* The listed name nearest to `name`, in out[LISTED_SIZE]; NULL when none is near. */
@@ -254,6 +273,52 @@ int sandbox_require(lua_State *L) {
     lua_pushvalue(L, -2);
     lua_rawset(L, 2);
     return 1;
+}
+
+/* ---- data -------------------------------------------------------------------------------------------------------- */
+
+/* Whether `ending` is one of a list such as ".obj.ply.stl". */
+static bool is_listed_ending(const char *ending, const char *endings) {
+    for (const char *e = endings; *e; e += ENDING)
+        if (strncasecmp(ending, e, ENDING) == 0) return true;
+    return false;
+}
+
+/* Records that a data file could not be read, and which file beside it has almost its name. */
+static void report_missing_data(script *s, const char *path, const char *name, const char *trouble, const place *p) {
+    char folder[SCRIPT_PATH], stem[SCRIPT_TEXT + 16], nearest[LISTED_SIZE], found[SCRIPT_TEXT + 128], suggestion[512] = "";
+    const char *slash = strrchr(name, '/'), *ending = name + strlen(name) - ENDING;
+    name_list list = {0};
+    folder_of(path, folder, sizeof folder);
+    list_files(&list, folder, ending);
+    snprintf(stem, sizeof stem, "%.*s", (int)(ending - (slash ? slash + 1 : name)), slash ? slash + 1 : name);
+    const char *other = nearest_listed(&list, stem, nearest);
+    if (other) snprintf(suggestion, sizeof suggestion, "%.*s%s%s", slash ? (int)(slash - name) + 1 : 0, name, other, ending);
+    snprintf(found, sizeof found, "'%s': %s", name, trouble);
+    problem_place(s, p, "a file that can be read, by its path from the scene's folder", found, other ? suggestion : NULL);
+}
+
+const source_file *read_data_file(script *s, const char *name, const char *endings, const place *p) {
+    char path[SCRIPT_PATH + SCRIPT_TEXT], expected[160], found[SCRIPT_TEXT + 8];
+    size_t length = strlen(name);
+    snprintf(found, sizeof found, "'%s'", name);
+    if (!is_plain_path(name)) {
+        problem_place(s, p, "a path below the scene's folder, of letters, digits, '_', '-', '.' and '/'", found, NULL);
+        return NULL;
+    }
+    if (length <= ENDING || !is_listed_ending(name + length - ENDING, endings)) {
+        size_t used = (size_t)snprintf(expected, sizeof expected, "a file that ends in");
+        for (const char *e = endings; *e; e += ENDING)
+            used += (size_t)snprintf(expected + used, sizeof expected - used, "%s %.4s", e == endings ? "" : " or", e);
+        problem_place(s, p, expected, found, NULL);
+        return NULL;
+    }
+    snprintf(path, sizeof path, "%s%s", s->folder, name);
+    const char *shown = shown_path(s, path);
+    const source_file *file = find_source(s, shown);
+    const char *trouble = file ? NULL : add_file(s->L, path, name, shown, DATA_LIMIT, &file);
+    if (trouble) report_missing_data(s, path, name, trouble, p);
+    return trouble ? NULL : file;
 }
 
 /* ---- recipes ----------------------------------------------------------------------------------------------------- */

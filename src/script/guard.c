@@ -129,6 +129,14 @@ void guard_begin(guard *g) {
     g->unlooked = g->unspent = 0;
 }
 
+double guard_pause(void) {
+    return processor_time();
+}
+
+void guard_resume(guard *g, double paused) {
+    if (g->started >= 0) g->started += processor_time() - paused;
+}
+
 void guard_raise(lua_State *L) {
     if (guard_of(L)->reason == GUARD_FINE) return;
     lua_pushlightuserdata(L, (void *)&abort_value);

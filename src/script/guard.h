@@ -58,6 +58,11 @@ void guard_settle(guard *g, int lua_status);
 /* Raises the abort if there is a sticky reason. */
 void guard_raise(lua_State *L);
 
+/* For work in C that has limits of its own (reading a mesh, solving for fibres): the processor time between the two calls
+ * is not the script's. */
+double guard_pause(void);
+void guard_resume(guard *g, double paused);
+
 /* The guard of a state. */
 guard *guard_of(lua_State *L);
 

@@ -205,6 +205,10 @@ int sandbox_require(lua_State *L);
 /* Pushes a fresh copy of a recipe's table, marked with its origin. `p` is where it was asked for. */
 void push_recipe(lua_State *L, const char *name, const place *p);
 const source_file *find_source(const script *s, const char *display);
+/* Reads a data file (a mesh, a table) by its path from the scene's folder; it becomes one of the sources, so that the
+ * run's folder has it. `endings` lists those allowed, as in ".obj.ply.stl", and is part of what was expected. NULL after
+ * recording a problem at `p`. */
+const source_file *read_data_file(script *s, const char *name, const char *endings, const place *p);
 void load_text(lua_State *L, const source_file *file);
 
 /* ---- module.c ---- */
@@ -227,6 +231,7 @@ typedef struct shape_value {
 void scene_charge(lua_State *L, int units);
 void shapes_open(lua_State *L);
 int api_shape(lua_State *L);
+int api_mesh(lua_State *L);
 int api_combine(lua_State *L);
 int api_translate(lua_State *L);
 int api_rotate(lua_State *L);
@@ -236,9 +241,10 @@ const shape *read_shape(script *s, int index, const place *p);
 
 void fibres_open(lua_State *L);
 int api_fibres(lua_State *L);
-/* Reads `fibres` of a body. The families of a function are FAMILIES_UNKNOWN until it is tried. */
+/* Reads `fibres` of a body of that shape (NULL: it was wrong). The families of a function are FAMILIES_UNKNOWN until it is
+ * tried. */
 enum { FAMILIES_UNKNOWN = -1 };
-void read_fibres(script *s, int index, const place *p, scene_fibres *out);
+void read_fibres(script *s, int index, const place *p, const shape *body, scene_fibres *out);
 
 /* ---- callbacks.c ---- */
 /* Reads a constant vector, or a Lua function, of three outputs. */

@@ -95,7 +95,8 @@ void module_open(lua_State *L) {
     static const luaL_Reg core[] = {
         {"params", api_params}, {"choice", api_choice}, {"scene", api_scene},     {"recipe", api_recipe},
         {"twin", api_twin},     {"shape", api_shape},   {"combine", api_combine}, {"translate", api_translate},
-        {"rotate", api_rotate}, {"scale", api_scale},   {"fibres", api_fibres},   {NULL, NULL},
+        {"rotate", api_rotate}, {"scale", api_scale},   {"fibres", api_fibres},   {"mesh", api_mesh},
+        {NULL, NULL},
     };
     int base = lua_gettop(L);
     lua_newtable(L);

@@ -92,7 +92,7 @@ static void read_solid(script *s, int index, const place *p, int number) {
         problem_place(s, &at, "a bounded shape for a body", "one that has no end", NULL);
     }
     place at = place_key(p, "fibres");
-    if (push_value(s->L, index, "fibres")) read_fibres(s, -1, &at, &b->fibres);
+    if (push_value(s->L, index, "fibres")) read_fibres(s, -1, &at, b->shape, &b->fibres);
     lua_pop(s->L, 1);
     function_field(s, index, p, "velocity", &b->velocity);
 }

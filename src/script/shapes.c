@@ -2,6 +2,7 @@
 #include "script/internal.h"
 
 #include "base/names.h"
+#include "geom/mesh.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -9,6 +10,8 @@
 
 enum {
     WEIGHT_LIMIT = 4096,      /* primitives in one shape: each is asked at every grid node near it */
+    MESH_WEIGHT = 16,         /* what a mesh costs, in primitives */
+    MESH_UNIT = 16,           /* triangles: a unit of a mesh is more than others, so that large ones have room */
     MADE_LIMIT = 1000 * 1000, /* units: the scene's arena does not count as Lua's memory */
 };
 
@@ -21,7 +24,7 @@ typedef struct shape_words {
 void scene_charge(lua_State *L, int units) {
     script *s = script_of(L);
     s->charged += units;
-    if (s->charged > MADE_LIMIT) throw_here(L, "shapes", "at most 1000000 shapes in one scene", "more", NULL);
+    if (s->charged > MADE_LIMIT) throw_here(L, "shapes", "at most 1000000 shapes, or as much in meshes and fields, in one scene", "more", NULL);
 }
 
 /* `nodes`: what the new shape takes in the arena, itself and its pointers to children. */
@@ -328,6 +331,92 @@ int api_rotate(lua_State *L) {
     for (int i = 0; i < 3; i++)
         shift[i] = center[i] - (R[i * 3] * center[0] + R[i * 3 + 1] * center[1] + R[i * 3 + 2] * center[2]);
     return push_moved(L, R, 1, shift);
+}
+
+/* ---- meshes ------------------------------------------------------------------------------------------------------ */
+
+/* How a mesh comes to lie in the scene. */
+typedef struct mesh_words {
+    char file[SCRIPT_TEXT];
+    double scale, center[3], axis[3], angle;
+    bool centered, turned;
+} mesh_words;
+
+static bool read_mesh_words(lua_State *L, const place *here, mesh_words *w) {
+    script *s = script_of(L);
+    *w = (mesh_words){.scale = 1};
+    field fields[] = {{.key = "file", .kind = FIELD_TEXT, .required = true, .text = w->file},
+                      {.key = "scale", .kind = FIELD_REAL, .number = &w->scale, .minimum = 1e-12, .maximum = 1e12},
+                      {.key = "center", .kind = FIELD_VECTOR, .number = w->center},
+                      {.key = "rotate", .kind = FIELD_OTHER}};
+    bool fine = read_fields(s, 1, here, fields, 4);
+    w->centered = fields[2].given, w->turned = fields[3].given;
+    if (!w->turned) return fine;
+    field turn[] = {{.key = "axis", .kind = FIELD_AXIS, .required = true, .number = w->axis},
+                    {.key = "angle", .kind = FIELD_REAL, .required = true, .number = &w->angle}};
+    place at = place_key(here, "rotate");
+    lua_pushstring(L, "rotate");
+    lua_rawget(L, 1);
+    fine = read_fields(s, lua_gettop(L), &at, turn, 2) && fine;
+    lua_pop(L, 1);
+    return fine;
+}
+
+/* Scales and turns about the origin; a center is where the middle of the box then goes. False when the mesh ends up where
+ * numbers no longer tell its corners apart. */
+static bool place_mesh(mesh *m, const mesh_report *facts, const mesh_words *w) {
+    double R[9], shift[3] = {0, 0, 0}, middle[3], size = 0, furthest = 0;
+    memcpy(R, identity, sizeof R);
+    if (w->turned) rotation_about(w->axis, w->angle * (acos(-1.0) / 180), R);
+    for (int c = 0; c < 3; c++) {
+        middle[c] = w->scale * 0.5 * (facts->minimum[c] + facts->maximum[c]);
+        size = fmax(size, w->scale * (facts->maximum[c] - facts->minimum[c]));
+    }
+    for (int c = 0; c < 3 && w->centered; c++)
+        shift[c] = w->center[c] - (R[3 * c] * middle[0] + R[3 * c + 1] * middle[1] + R[3 * c + 2] * middle[2]);
+    mesh_transform(m, R, w->scale, shift);
+    for (int64_t i = 0; i < 3 * m->vertex_count; i++) furthest = fmax(furthest, fabs(m->vertex[i]));
+    return size >= 1e-30 && furthest <= 1e30 && furthest <= 1e9 * size;
+}
+
+/* Nothing here calls Lua: the mesh is not the arena's. */
+static status make_mesh(script *s, const source_file *file, const mesh_words *w, const shape **out, int64_t *triangles,
+                        report *r) {
+    mesh m;
+    mesh_report facts;
+    *out = NULL;
+    status code = mesh_read(file->display, file->text, file->size, &m, r);
+    if (code == STATUS_OK) code = mesh_make_solid(file->display, &m, &facts, r);
+    if (code == STATUS_OK && !place_mesh(&m, &facts, w))
+        code = report_input(r, file->display, 0, "center", "a place within a billion of the mesh's sizes of the origin",
+                            "one further away", NULL);
+    if (code == STATUS_OK) {
+        *triangles = m.triangle_count;
+        *out = shape_mesh(s->scene->memory, &m, file->name);
+        if (!*out) code = report_set(r, STATUS_SYSTEM, "out of memory for the mesh %s", file->display);
+    }
+    mesh_free(&m);
+    return code;
+}
+
+/* core.mesh{file, scale, center, rotate} */
+int api_mesh(lua_State *L) {
+    script *s = script_of(L);
+    luaL_checkstack(L, API_STACK, "shapes");
+    place here = s->here, at = place_key(&here, "file");
+    lua_settop(L, 1);
+    mesh_words w;
+    const source_file *file = read_mesh_words(L, &here, &w) ? read_data_file(s, w.file, ".obj.ply.stl", &at) : NULL;
+    if (!file) return push_wrong(L);
+    const shape *made;
+    int64_t triangles = 0;
+    report r;
+    double paused = guard_pause();
+    status code = make_mesh(s, file, &w, &made, &triangles, &r);
+    guard_resume(&s->guard, paused);
+    if (code == STATUS_OK) return push_shape(L, made, MESH_WEIGHT, (int)(triangles / MESH_UNIT) + 1);
+    problem_report(s, &r);
+    return push_wrong(L);
 }
 
 void shapes_open(lua_State *L) {

@@ -2,3 +2,4 @@
 foreach(name constitutive damage damage_grid transfer contact tension determinism)
   sunder_test(${name} ${CMAKE_SOURCE_DIR}/tests/verify/test_${name}.c sunder_sim)
 endforeach()
+sunder_test(inextensible ${CMAKE_SOURCE_DIR}/tests/verify/test_inextensible.c sunder_sim)

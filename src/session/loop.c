@@ -36,6 +36,7 @@ static void log_frame(session *s, double seconds) {
         {"crack_normal_y", s->measures.has_crack ? s->measures.crack_normal[1] : NAN},
         {"crack_normal_z", s->measures.has_crack ? s->measures.crack_normal[2] : NAN},
         {"determinant_min", m->determinant_min}, {"determinant_max", m->determinant_max}, {"speed_max", m->speed_max},
+        {"fibre_stretch_min", m->stretch_min}, {"fibre_stretch_max", m->stretch_max},
         {"dt_min", s->measures.dt_min},
     };
     report r;

@@ -82,6 +82,17 @@ static void write_state(session *s, json_writer *w) {
     }
     json_member_number(w, "determinant_min", sums->determinant_min);
     json_member_number(w, "determinant_max", sums->determinant_max);
+    json_key(w, "fibre_stretch");
+    json_object(w);
+    json_member_number(w, "min", sums->stretch_min);
+    json_member_number(w, "max", sums->stretch_max);
+    json_object_end(w);
+    json_key(w, "constraint");
+    json_object(w);
+    json_member_integer(w, "solves", sums->constraint_solves);
+    json_member_integer(w, "iterations", sums->constraint_iterations);
+    json_member_integer(w, "factorisations", sums->constraint_factorisations);
+    json_object_end(w);
 }
 
 status summary_write(session *s, report *r) {

@@ -132,7 +132,7 @@ static status check_fibres(const scene *s, const scene_body *b, report *r) {
     const effect *damage_effect = effects[effect_index("damage")], *fibre_effect = effects[effect_index("fibres")];
     int wanted = 0;
     if (damage->on && damage->value[effect_parameter(damage_effect, "alpha")][0] != 0) wanted = 1;
-    if (fibres->on) wanted = 1;
+    if (fibres->on || m->effects[effect_index("inextensible")].on) wanted = 1;
     if (damage->on && damage->value[effect_parameter(damage_effect, "alpha2")][0] != 0) wanted = 2;
     if (fibres->on && fibres->value[effect_parameter(fibre_effect, "gamma2")][0] != 0) wanted = 2;
     if (b->fibres.families >= wanted) return STATUS_OK;

@@ -1,5 +1,6 @@
 /* The solid engine's life: creating, stepping, reporting limits. */
 #include "base/memory.h"
+#include "solid/inextensible.h"
 #include "solid/order.h"
 
 #include <math.h>
@@ -49,11 +50,12 @@ static void plan_fields(solid *s) {
     s->history_field = find_index(s, "damage_history");
     s->fibre_field = find_index(s, "fibre");
     s->fibre2_field = find_index(s, "fibre2");
+    s->tension_field = find_index(s, "fibre_tension");
     s->transfers_damage = s->damage_field >= 0;
 }
 
 void solid_constants_refresh(solid *s) {
-    s->implicit_tolerance = 1;
+    s->implicit_tolerance = s->constraint.tolerance = 1;
     for (int m = 0; m < s->definition.material_count; m++) {
         const solid_material *material = &s->definition.materials[m];
         s->material_mask[m] = 0;
@@ -71,6 +73,7 @@ static void destroy(solid *s) {
     if (!s) return;
     particles_free(s);
     grid_free(s);
+    constraint_forget(s);
     memory_free(s->workers, (size_t)s->threads * sizeof *s->workers);
     memory_free(s, sizeof *s);
 }
@@ -166,6 +169,12 @@ static status sort(solid *s, report *r) {
     return code;
 }
 
+/* What a frame starts with must not depend on the steps before it, or a resumed run would differ. */
+static status begin_frame(solid *s, report *r) {
+    constraint_forget(s);
+    return sort(s, r);
+}
+
 static status solve_effects(solid *s, real dt, report *r) {
     for (int e = 0; e < s->effect_count; e++) {
         if (!(s->mask >> e & 1) || !effects[e]->stages->solve) continue;
@@ -173,6 +182,15 @@ static status solve_effects(solid *s, real dt, report *r) {
         for (int before = 0; before < e; before++) done |= (s->mask >> before & 1) && effects[before]->stages->solve == effects[e]->stages->solve;
         if (done) continue;
         status code = effects[e]->stages->solve(s, dt, r);
+        if (code != STATUS_OK) return code;
+    }
+    return STATUS_OK;
+}
+
+static status constrain(solid *s, real dt, report *r) {
+    for (int e = 0; e < s->effect_count; e++) {
+        if (!(s->mask >> e & 1) || !effects[e]->stages->constrain) continue;
+        status code = effects[e]->stages->constrain(s, dt, r);
         if (code != STATUS_OK) return code;
     }
     return STATUS_OK;
@@ -189,6 +207,8 @@ static status step(solid *s, double dt, solid_fault *fault, report *r) {
     status solved = solve_effects(s, (real)dt, r);
     if (solved != STATUS_OK) return solved;
     grid_update(s, (real)dt);
+    status constrained = constrain(s, (real)dt, r);
+    if (constrained != STATUS_OK) return constrained;
     double t2 = now();
     transfer_to_particles(s, (real)dt);
     double t3 = now();
@@ -214,6 +234,7 @@ static double bytes_per_particle(const solid *s) {
     double sort_bytes = (double)s->count * (2 * sizeof *s->sort_keys + sizeof *s->permute);
     double node_reals = NODE + (s->damage_grid ? DAMAGE_NODE : 0) + (s->old_grid ? NODE : 0) + (s->implicit_grid ? 9 : 0);
     double grid_bytes = (double)s->slot_capacity * BLOCK_NODES * node_reals * sizeof(real);
+    grid_bytes += constraint_bytes(s);
     double tables = (double)s->tile_capacity * (sizeof *s->tiles + sizeof *s->tile_results) +
                     (double)s->block_capacity * sizeof *s->blocks + (double)s->hash_capacity * 12;
     return (bytes + sort_bytes + grid_bytes + tables) / (double)s->count;
@@ -231,7 +252,8 @@ static int stage_names(uint32_t mask, char (*text)[48], int limit) {
     } places[] = {
         {"p2g", "degrade", offsetof(solid_stages, degrade)}, {NULL, "stress", offsetof(solid_stages, stress)},
         {"solve", "solve", offsetof(solid_stages, solve)},
-        {"grid", "grid", offsetof(solid_stages, grid)},      {"g2p", "update", offsetof(solid_stages, update)},
+        {"grid", "grid", offsetof(solid_stages, grid)},      {NULL, "constrain", offsetof(solid_stages, constrain)},
+        {"g2p", "update", offsetof(solid_stages, update)},
         {NULL, "degrade", offsetof(solid_stages, degrade)},  {NULL, "wave", offsetof(solid_stages, wave)},
     };
     int count = 0;
@@ -252,7 +274,7 @@ static int stage_names(uint32_t mask, char (*text)[48], int limit) {
 
 const solid_engine solid_engine_table = {
     .simd = TEXT(SOLID_SIMD_NAME), .precision = SUNDER_PRECISION, .effects = effects, .effect_count = SOLID_EFFECTS,
-    .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .sort = sort, .step = step,
+    .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .sort = begin_frame, .step = step,
     .measure = solid_measure, .read = particles_read, .components = components, .save = solid_save, .restore = solid_restore,
     .stages = stage_names, .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = phases,
 };

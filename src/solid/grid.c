@@ -1,6 +1,7 @@
 /* The sparse grid: which blocks of nodes are reached, their colours, and the update of their velocities. */
 #include "base/memory.h"
 #include "base/threads.h"
+#include "solid/inextensible.h"
 #include "solid/order.h"
 
 #include <math.h>
@@ -64,6 +65,7 @@ static status reserve_slots(solid *s, int32_t slots, report *r) {
     size_t node_bytes = BLOCK_NODES * NODE * sizeof(real), damage_bytes = BLOCK_NODES * DAMAGE_NODE * sizeof(real);
     grid_free(s);
     status code = implicit_reserve(s, capacity, r);
+    if (code == STATUS_OK) code = constraint_reserve(s, capacity, r);
     if (code != STATUS_OK) return code;
     s->slot_coordinate = memory_allocate_array(fresh, sizeof *s->slot_coordinate);
     s->grid = memory_allocate_array(fresh, node_bytes);
@@ -80,6 +82,7 @@ static status reserve_slots(solid *s, int32_t slots, report *r) {
 
 void grid_free(solid *s) {
     implicit_free(s);
+    constraint_free(s);
     size_t slots = (size_t)s->slot_capacity;
     memory_free(s->slot_coordinate, s->slot_coordinate ? slots * sizeof *s->slot_coordinate : 0);
     memory_free(s->grid, s->grid ? slots * BLOCK_NODES * NODE * sizeof(real) : 0);
@@ -135,6 +138,7 @@ status grid_build(solid *s, report *r) {
             if (s->blocks[b].neighbour[n] == 0) s->blocks[b].neighbour[n] = order_rank(s, neighbour_key(&s->blocks[b], o));
         }
     colour_blocks(s);
+    s->constraint.mapped = false;
     return STATUS_OK;
 }
 
@@ -165,16 +169,21 @@ static void update_slot(void *context, int64_t slot, int worker) {
         for (int n = 0; n < BLOCK_NODES; n++) d[n] = weight[n] > 0 ? d[n] / weight[n] : 0;
     }
     grid_work w = {.state = s, .slot = (int32_t)slot, .nodes = nodes, .dt = u->dt, .result = &s->slot_results[slot]};
-    memset(w.result, 0, sizeof *w.result);
+    if (s->constraint.on) memset(s->constraint.holds + slot * BLOCK_NODES, 0, BLOCK_NODES * sizeof(node_hold));
     for (int e = 0; e < s->effect_count; e++)
         if ((s->mask >> e & 1) && s->effects[e]->stages->grid) s->effects[e]->stages->grid(&w);
+}
+
+void grid_collect_results(solid *s) {
+    for (int32_t i = 0; i < s->slot_count; i++) {
+        s->grip_work += s->slot_results[i].grip_work;
+        for (int c = 0; c < 3; c++) s->grip_impulse[c] += s->slot_results[i].grip_impulse[c];
+        s->slot_results[i] = (block_result){0};
+    }
 }
 
 void grid_update(solid *s, real dt) {
     update_context u = {s, dt};
     parallel_for(s->threads, s->slot_count, 16, update_slot, &u);
-    for (int32_t i = 0; i < s->slot_count; i++) {
-        s->grip_work += s->slot_results[i].grip_work;
-        for (int c = 0; c < 3; c++) s->grip_impulse[c] += s->slot_results[i].grip_impulse[c];
-    }
+    grid_collect_results(s);
 }

@@ -5,6 +5,11 @@
 
 #include <math.h>
 
+/* What minima and maxima start from. */
+static solid_measures empty_measures(void) {
+    return (solid_measures){.determinant_min = HUGE_VAL, .determinant_max = -HUGE_VAL, .stretch_min = HUGE_VAL};
+}
+
 /* ρ0 V |C|² D/2: the kinetic energy of the affine part, and its angular momentum m D ε:C. */
 static void add_particle(const solid *s, const solid_tile *tile, int p, double inertia, solid_measures *m) {
     int32_t pack = tile->first_pack + p / PACK;
@@ -35,6 +40,21 @@ static void add_particle(const solid *s, const solid_tile *tile, int p, double i
     m->speed_max = fmax(m->speed_max, sqrt(speed2));
 }
 
+static void add_stretch(const solid *s, const solid_tile *tile, int p, solid_measures *m) {
+    int32_t pack = tile->first_pack + p / PACK;
+    double square = 0;
+    for (int row = 0; row < 3; row++) {
+        double along = 0;
+        for (int c = 0; c < 3; c++)
+            along += (double)field_at(&s->fields[FIELD_DEFORMATION], pack, 3 * row + c, 0)[p % PACK] *
+                     (double)field_at(&s->fields[s->fibre_field], pack, c, 0)[p % PACK];
+        square += along * along;
+    }
+    if (square == 0) return; /* a body without fibres in a scene that has some */
+    m->stretch_min = fmin(m->stretch_min, sqrt(square));
+    m->stretch_max = fmax(m->stretch_max, sqrt(square));
+}
+
 static void add_damage(const solid *s, const solid_tile *tile, int p, solid_measures *m) {
     double d = (double)field_at(&s->fields[s->damage_field], tile->first_pack + p / PACK, 0, 0)[p % PACK];
     int bin = (int)(d * SOLID_BINS);
@@ -53,7 +73,7 @@ static void measure_tile(void *context, int64_t i, int worker) {
     measure_context *c = context;
     const solid *s = c->state;
     solid_measures *m = &c->parts[i];
-    *m = (solid_measures){.determinant_min = HUGE_VAL, .determinant_max = -HUGE_VAL};
+    *m = empty_measures();
     tile_work w = {.state = s, .tile = &s->tiles[i], .scratch = &s->workers[worker].tile};
     for (int p = 0; p < TILE_PARTICLES; p++) w.scratch->degradation[p] = 1;
     for (int pass = 0; pass < 2; pass++)
@@ -69,6 +89,7 @@ static void measure_tile(void *context, int64_t i, int worker) {
     bool damaged = s->material_damaged[w.tile->material];
     for (int p = 0; p < w.tile->count; p++) {
         add_particle(s, w.tile, p, inertia, m);
+        if (s->fibre_field >= 0) add_stretch(s, w.tile, p, m);
         if (damaged) add_damage(s, w.tile, p, m);
         else m->histogram[0] += 1;
     }
@@ -91,19 +112,25 @@ static void add_part(solid_measures *m, const solid_measures *part) {
     m->determinant_min = fmin(m->determinant_min, part->determinant_min);
     m->determinant_max = fmax(m->determinant_max, part->determinant_max);
     m->speed_max = fmax(m->speed_max, part->speed_max);
+    m->stretch_min = fmin(m->stretch_min, part->stretch_min);
+    m->stretch_max = fmax(m->stretch_max, part->stretch_max);
 }
 
 status solid_measure(const solid *s, solid_measures *m, report *r) {
     measure_context c = {s, memory_allocate_array((size_t)s->tile_count, sizeof *c.parts)};
     if (!c.parts) return report_set(r, STATUS_SYSTEM, "out of memory for the measures of %d tiles", s->tile_count);
     parallel_for(s->threads, s->tile_count, 8, measure_tile, &c);
-    *m = (solid_measures){.determinant_min = HUGE_VAL, .determinant_max = -HUGE_VAL};
+    *m = empty_measures();
     for (int32_t t = 0; t < s->tile_count; t++) add_part(m, &c.parts[t]);
     memory_free(c.parts, (size_t)s->tile_count * sizeof *c.parts);
     double count = (double)s->count;
     m->damage_mean /= count;
     m->broken_fraction /= count;
     for (int b = 0; b < SOLID_BINS; b++) m->histogram[b] /= count;
+    if (m->stretch_max == 0) m->stretch_min = m->stretch_max = 1;
+    m->constraint_solves = s->constraint.solves;
+    m->constraint_iterations = s->constraint.iterations;
+    m->constraint_factorisations = s->constraint.factorisations;
     m->grip_work = s->grip_work;
     memcpy(m->grip_impulse, s->grip_impulse, sizeof m->grip_impulse);
     return STATUS_OK;

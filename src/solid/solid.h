@@ -63,6 +63,8 @@ typedef struct solid_measures {
     double damage_mean, damage_max, broken_fraction; /* broken: d > 0.9, of all particles */
     double histogram[SOLID_BINS];                    /* fraction of particles by damage */
     double determinant_min, determinant_max, speed_max;
+    double stretch_min, stretch_max; /* |F a1| of the first fibre family; 1 where there is none */
+    int64_t constraint_solves, constraint_iterations, constraint_factorisations; /* of inextensible fibres, since the start */
 } solid_measures;
 
 typedef struct solid solid;
@@ -87,8 +89,8 @@ typedef struct solid_engine {
     /* Largest Δt of each effect from the current state into limit[effect_count] (HUGE_VAL: none); momentum's, without the cfl
      * factor, is that of effect "elastic". */
     void (*limits)(const solid *s, double *limit);
-    /* Puts particles in canonical order. Called by the simulation at the start of every frame (so a resumed run finds the same
-     * order), and by `step` itself when a particle leaves its block's margin. Errors: out of memory. */
+    /* Puts particles in canonical order and drops what was kept from step to step only to save work. Called by the simulation at the start of every
+     * frame (so a resumed run finds the same); `step` sorts by itself when a particle leaves its block's margin. Errors: out of memory. */
     status (*sort)(solid *s, report *r);
     /* One step of symplectic Euler. STATUS_DIVERGED when the new state is not finite or runs away; `fault` says where. */
     status (*step)(solid *s, double dt, solid_fault *fault, report *r);

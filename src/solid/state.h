@@ -70,13 +70,56 @@ typedef struct solid_worker {
     real window[WINDOW_NODES * NODE];
     real old_window[WINDOW_NODES * NODE]; // FLIP only
     real damage_window[WINDOW_NODES * DAMAGE_NODE];
-    real implicit_window[WINDOW_NODES * 4]; // implicit damage only
+    real implicit_window[WINDOW_NODES * 4]; // what is solved for on the grid: planes
 } solid_worker;
 
 /* What the implicit solve needs of a material. */
 typedef struct implicit_material {
     real eta, length2;
 } implicit_material;
+
+/* How a boundary holds a node: what the inextensible solve may not undo. */
+typedef enum hold_kind {
+    HOLD_FREE,
+    HOLD_FIXED,     /* its velocity is prescribed */
+    HOLD_PLANE,     /* it moves within a tangent plane */
+    HOLD_TOUCHING,  /* the same while it is pressed against a boundary that it may leave */
+    HOLD_STUCK,     /* so pressed, and held by friction */
+    HOLD_CANDIDATE, /* within such a boundary, but leaving it */
+} hold_kind;
+
+typedef struct node_hold {
+    real normal[3], before[3]; /* the boundary's normal; the node's velocity before contact */
+    real wall;                 /* the boundary's speed along the normal */
+    int32_t kind;
+} node_hold;
+
+typedef struct constraint_sums {
+    double first, second, largest;
+} constraint_sums;
+
+/* The inextensible solve (inextensible.c). */
+typedef struct fibre_constraint {
+    bool on, material[SOLID_MATERIALS];
+    real relaxation[SOLID_MATERIALS];
+    double tolerance;
+    int solver; /* inextensible_solver: the most that the materials ask for */
+    int64_t solves, iterations, factorisations;
+    struct sparse_solver *preconditioner; /* NULL: Jacobi's */
+    bool refused;  /* no library is worth its work for now */
+    bool mapped;   /* `number` belongs to the slots as they are */
+    double *vector;        // [2][vector_size], what the preconditioner reads and writes
+    int32_t (*unknown)[3]; // [vector_size], cells in grid coordinates
+    int32_t vector_size, unknowns;
+    int32_t capacity, slot_count;
+    int32_t *slots;    // [capacity], those that fibres reach
+    uint8_t *reached;  // [capacity]
+    int32_t *number;   // [capacity][BLOCK_NODES], unknowns of the preconditioner, −1: none
+    real *cells;           // [capacity] planes of cells
+    real *nodes;           // [capacity][BLOCK_NODES][NODE]
+    node_hold *holds;      // [capacity][BLOCK_NODES]
+    constraint_sums *sums; // [capacity]
+} fibre_constraint;
 
 /* Per-block results of a pass, reduced in block order so that bits do not depend on threads. */
 typedef struct block_result {
@@ -105,13 +148,14 @@ struct solid {
     int32_t implicit_capacity;
     real *implicit_grid;   // [implicit_capacity] planes of nodes, implicit.c
     double *implicit_sums; // [implicit_capacity][2]
+    fibre_constraint constraint;
 
     int64_t count;
     int32_t pack_count, pack_capacity;
     int32_t *id; // [pack_capacity][PACK], −1 for padding
     int field_count;
     solid_field fields[FIELD_LIMIT];
-    int damage_field, history_field, fibre_field, fibre2_field; /* indices, −1 when absent */
+    int damage_field, history_field, fibre_field, fibre2_field, tension_field; /* indices, −1 when absent */
 
     int32_t tile_count, tile_capacity, result_capacity, block_count, block_capacity, colour_capacity;
     solid_tile *tiles;
@@ -176,6 +220,8 @@ typedef struct solid_stages {
     void (*energy)(tile_work *w);     /* measures */
     /* Between the way to the grid and the grid's update, once a step: for what must be solved for. */
     status (*solve)(solid *s, real dt, report *r);
+    /* After the grid's update, once a step: what must hold for its velocities. */
+    status (*constrain)(solid *s, real dt, report *r);
     /* Tells the engine what a material needs of it beyond constants; called after `constants`. */
     void (*declare)(solid *s, int material, const effect_values *all);
 } solid_stages;
@@ -200,6 +246,7 @@ status particles_sort(solid *s, report *r);
 status grid_build(solid *s, report *r);
 void grid_free(solid *s);
 void grid_update(solid *s, real dt);
+void grid_collect_results(solid *s); /* adds what the slots' boundaries did to the totals */
 /* transfer.c */
 void transfer_to_grid(solid *s, real dt);
 void transfer_to_particles(solid *s, real dt);

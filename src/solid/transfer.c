@@ -6,28 +6,10 @@
  * and takes back v = Σ w v_i, L = D⁻¹ Σ w v_i (x_i − x_p)ᵀ. Distances are in units of dx; the four momenta-and-mass of four nodes along z
  * are one row. The damage channel, Σ w d and Σ w, rides along with its own kernel. */
 #include "base/threads.h"
-#include "solid/kernels.h"
 #include "solid/order.h"
+#include "solid/records.h"
 
 #include <stddef.h>
-
-/* Slots of a particle's record for scattering momentum and for gathering velocity. */
-enum {
-    RECORD = 32,
-    P2G_BASE = 0, P2G_X = 4, P2G_Y = 8, P2G_Z = 12, P2G_WZ = 16, P2G_WX = 20, P2G_WY = 24, P2G_NODE = 28, P2G_DAMAGE = 29,
-    G2P_WX = 0, G2P_WY = 4, G2P_WZ = 8, G2P_OFFSET = 12, G2P_NODE = 15, G2P_OUT = 16,
-};
-
-/* Writes lanes of `value` into column `slot` of the records of a part. */
-SIMD_INLINE void record_put(real *records, int first, int slot, vec value) {
-    for (int lane = 0; lane < VEC_LANES; lane++) records[(first + lane) * RECORD + slot] = value[lane];
-}
-
-SIMD_INLINE vec record_get(const real *records, int first, int slot) {
-    vec value;
-    for (int lane = 0; lane < VEC_LANES; lane++) value[lane] = records[(first + lane) * RECORD + slot];
-    return value;
-}
 
 /* ---- particles to grid ------------------------------------------------------------------------------------------- */
 
@@ -80,31 +62,6 @@ SIMD_INLINE void momentum_records(const tile_work *w, kernel_kind kernel, real d
             }
             record_put(records, first, P2G_NODE, window_index(at.base));
         }
-}
-
-/* Adds the contributions of particles that share a first node to the window: accumulated in registers, stored once. */
-SIMD_INLINE int scatter_run(const real *records, int p, int count, int nodes, const node_row node_offset, real *window) {
-    real node = records[p * RECORD + P2G_NODE];
-    node_row sum[16];
-    real *first = window + (int)node * NODE;
-    for (int i = 0; i < nodes; i++)
-        for (int j = 0; j < nodes; j++) sum[i * nodes + j] = row_load(first + (i * STRIDE_X + j * STRIDE_Y) * NODE);
-    for (; p < count && records[p * RECORD + P2G_NODE] == node; p++) {
-        const real *r = records + p * RECORD;
-        node_row along_y = row_repeat(r + P2G_Y), along_x = row_repeat(r + P2G_X), weight = row_spread(r + P2G_WZ);
-        node_row value = row_fma(row_repeat(r + P2G_Z), node_offset, row_repeat(r + P2G_BASE));
-        for (int i = 0; i < nodes; i++) {
-            node_row weight_x = row_scale(weight, r[P2G_WX + i]), here = value;
-            for (int j = 0; j < nodes; j++) {
-                sum[i * nodes + j] = row_fma(row_scale(weight_x, r[P2G_WY + j]), here, sum[i * nodes + j]);
-                here = row_add(here, along_y);
-            }
-            value = row_add(value, along_x);
-        }
-    }
-    for (int i = 0; i < nodes; i++)
-        for (int j = 0; j < nodes; j++) row_store(first + (i * STRIDE_X + j * STRIDE_Y) * NODE, sum[i * nodes + j]);
-    return p;
 }
 
 SIMD_INLINE void scatter_momentum(const tile_work *w, int nodes, real *window) {
@@ -228,34 +185,6 @@ SIMD_INLINE void gather_weights(const tile_work *w, kernel_kind kernel) {
             record_put(records, first, G2P_OFFSET + 2, at.u.z);
             record_put(records, first, G2P_NODE, window_index(at.base));
         }
-}
-
-/* One particle: Σ w v_i and Σ w v_i (x_i − x_p)ᵀ by separable sums, y first, then x, then z. Results in the record: velocity, then the three
- * columns. */
-SIMD_INLINE void gather_particle(real *r, int nodes, const node_row node_offset, const real *window) {
-    const real *first = window + (int)r[G2P_NODE] * NODE;
-    node_row plain = {0}, along_x = {0}, along_y = {0};
-    for (int i = 0; i < nodes; i++) {
-        node_row sum = {0}, moment = {0};
-        for (int j = 0; j < nodes; j++) {
-            node_row v = row_load(first + (i * STRIDE_X + j * STRIDE_Y) * NODE);
-            real weight = r[G2P_WY + j];
-            sum = row_scale_add(v, weight, sum);
-            moment = row_scale_add(v, weight * ((real)j - r[G2P_OFFSET + 1]), moment);
-        }
-        real weight = r[G2P_WX + i];
-        plain = row_scale_add(sum, weight, plain);
-        along_x = row_scale_add(sum, weight * ((real)i - r[G2P_OFFSET + 0]), along_x);
-        along_y = row_scale_add(moment, weight, along_y);
-    }
-    node_row weight_z = row_spread(r + G2P_WZ), zero = {0};
-    const real z[4] = {r[G2P_OFFSET + 2], r[G2P_OFFSET + 2], r[G2P_OFFSET + 2], r[G2P_OFFSET + 2]};
-    node_row distance_z = row_scale_add(row_repeat(z), -1, node_offset);
-    node_row weighted = row_fma(plain, weight_z, zero);
-    row_fold(weighted, r + G2P_OUT);
-    row_fold(row_fma(along_x, weight_z, zero), r + G2P_OUT + 4);
-    row_fold(row_fma(along_y, weight_z, zero), r + G2P_OUT + 8);
-    row_fold(row_fma(weighted, distance_z, zero), r + G2P_OUT + 12);
 }
 
 SIMD_INLINE void gather_tile(const tile_work *w, kernel_kind kernel, const node_row node_offset, const real *window) {

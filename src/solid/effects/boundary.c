@@ -7,39 +7,61 @@
 
 #include <math.h>
 
-/* The velocity that the boundary leaves a node with; v is the node's, u the boundary's at that place. */
-static void contact_velocity(const solid_boundary *b, const double rest[3], double dx, const double u[3], double v[3]) {
+/* The velocity that a boundary leaves a node with, and how it holds the node; v is the node's, u the boundary's at that place, normal the
+ * boundary's (untouched where it does not matter). */
+static hold_kind contact_velocity(const solid_boundary *b, const double rest[3], double dx, const double u[3], double v[3], double normal[3]) {
     if (b->grip || b->contact == CONTACT_STICKY) {
         for (int c = 0; c < 3; c++) v[c] = u[c];
-        return;
+        return HOLD_FIXED;
     }
-    double local[3], n[3] = {0, 0, 0};
+    double local[3];
     shape_normal(b->shape, rest, 1e-3 * dx, local);
-    for (int row = 0; row < 3; row++)
-        for (int c = 0; c < 3; c++) n[row] += b->motion.rotation[row * 3 + c] * local[c];
+    for (int row = 0; row < 3; row++) {
+        normal[row] = 0;
+        for (int c = 0; c < 3; c++) normal[row] += b->motion.rotation[row * 3 + c] * local[c];
+    }
     double relative[3] = {v[0] - u[0], v[1] - u[1], v[2] - u[2]};
-    double normal_speed = relative[0] * n[0] + relative[1] * n[1] + relative[2] * n[2];
-    if (b->contact == CONTACT_SEPARATE && normal_speed >= 0) return;
+    double normal_speed = relative[0] * normal[0] + relative[1] * normal[1] + relative[2] * normal[2];
+    if (b->contact == CONTACT_SEPARATE && normal_speed >= 0) return HOLD_CANDIDATE;
     double tangent[3], tangent_speed = 0;
     for (int c = 0; c < 3; c++) {
-        tangent[c] = relative[c] - normal_speed * n[c];
+        tangent[c] = relative[c] - normal_speed * normal[c];
         tangent_speed += tangent[c] * tangent[c];
     }
     tangent_speed = sqrt(tangent_speed);
     double lost = b->friction * fabs(normal_speed);
     double keep = tangent_speed > lost ? 1 - lost / tangent_speed : 0;
     for (int c = 0; c < 3; c++) v[c] = u[c] + keep * tangent[c];
+    bool stuck = keep == 0 && b->friction > 0;
+    if (b->contact == CONTACT_SEPARATE) return stuck ? HOLD_STUCK : HOLD_TOUCHING;
+    return stuck ? HOLD_FIXED : HOLD_PLANE;
 }
 
-/* Applies one boundary to one node at world position x. */
-static void apply_to_node(const solid_boundary *b, const double x[3], double dx, real *node, block_result *result) {
+/* Where boundaries overlap: a node that two of them hold in different planes cannot move; one that is only near a boundary is
+ * whatever the other makes of it. */
+static void merge_hold(node_hold *into, const node_hold *from) {
+    real alike = into->normal[0] * from->normal[0] + into->normal[1] * from->normal[1] + into->normal[2] * from->normal[2];
+    if (into->kind == HOLD_FIXED || (from->kind == HOLD_CANDIDATE && into->kind != HOLD_FREE)) return;
+    bool both = into->kind != HOLD_FREE && into->kind != HOLD_CANDIDATE && from->kind != HOLD_FIXED;
+    hold_kind kind = both && alike < (real)0.99 ? HOLD_FIXED : (hold_kind)from->kind;
+    *into = *from;
+    into->kind = (int32_t)kind;
+}
+
+/* Applies one boundary to one node at world position x; `hold` is NULL unless someone wants to know. */
+static void apply_to_node(const solid_boundary *b, const double x[3], double dx, real *node, block_result *result, node_hold *hold) {
     double rest[3];
     rigid_motion_to_rest(&b->motion, x, rest);
     if (shape_distance(b->shape, rest) >= 0) return;
-    double u[3], v[3] = {(double)node[0], (double)node[1], (double)node[2]}, mass = (double)node[3];
+    double u[3], v[3] = {(double)node[0], (double)node[1], (double)node[2]}, mass = (double)node[3], normal[3] = {0, 0, 0};
     double before[3] = {v[0], v[1], v[2]};
     rigid_motion_velocity(&b->motion, x, u);
-    contact_velocity(b, rest, dx, u, v);
+    hold_kind kind = contact_velocity(b, rest, dx, u, v, normal);
+    if (hold) {
+        node_hold now = {.wall = (real)(u[0] * normal[0] + u[1] * normal[1] + u[2] * normal[2]), .kind = (int32_t)kind};
+        for (int c = 0; c < 3; c++) now.normal[c] = (real)normal[c], now.before[c] = (real)before[c];
+        merge_hold(hold, &now);
+    }
     for (int c = 0; c < 3; c++) {
         double impulse = mass * (v[c] - before[c]);
         result->grip_impulse[c] += impulse;
@@ -52,6 +74,7 @@ static void hold(const grid_work *w) {
     const solid *s = w->state;
     double dx = s->definition.dx;
     const int32_t *block = s->slot_coordinate[w->slot];
+    node_hold *holds = s->constraint.on ? s->constraint.holds + (int64_t)w->slot * BLOCK_NODES : NULL;
     double corner[3], center[3], reach = 0.5 * sqrt(3.0) * (BLOCK - 1) * dx;
     for (int c = 0; c < 3; c++) {
         corner[c] = (double)block[c] * BLOCK * dx;
@@ -67,7 +90,7 @@ static void hold(const grid_work *w) {
             real *n = w->nodes + node * NODE;
             if (!(n[3] > 0)) continue;
             double x[3] = {corner[0] + dx * (node / 16), corner[1] + dx * (node / 4 % 4), corner[2] + dx * (node % 4)};
-            apply_to_node(b, x, dx, n, w->result);
+            apply_to_node(b, x, dx, n, w->result, holds ? holds + node : NULL);
         }
     }
 }

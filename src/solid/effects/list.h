@@ -10,7 +10,8 @@
     X(corotated) /* or this: a material has one elastic model */                                                       \
     X(fibres)                                                                                                          \
     X(gravity)                                                                                                         \
-    X(boundary) /* last word on the grid's velocities */
+    X(boundary) /* grips and colliders on the grid's velocities */                                                     \
+    X(inextensible) /* the last word on them */
 
 #define SOLID_EFFECT_INDEX(name) EFFECT_##name,
 enum { SOLID_EFFECT_LIST(SOLID_EFFECT_INDEX) SOLID_EFFECTS };

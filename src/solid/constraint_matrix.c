@@ -1,0 +1,183 @@
+/* The inextensible solve's operator as a matrix, B M⁻¹ Bᵀ + ε over the cells that hold fibres (METHOD.md §4): what libraries make
+ * preconditioners of. B's row of a cell is dense on the nodes around it: 4³ with the quadratic kernel, 6³ with the cubic. In f64 and one
+ * thread: it is made seldom. */
+#include "base/memory.h"
+#include "solid/inextensible_lanes.h"
+#include "solid/order.h"
+
+typedef struct assembly {
+    const solid *state;
+    const int32_t *number; // [slots][BLOCK_NODES], −1: no unknown
+    double dt;
+    int low, width; /* a cell's nodes start at `low` from it */
+    double *rows;   // [cells][width³][3]
+    int32_t (*near)[125]; // [slots] slots of the blocks around, −2 … 2; −1: none
+} assembly;
+
+static size_t row_size(const assembly *a) {
+    return (size_t)(a->width * a->width * a->width * 3);
+}
+
+/* One particle's share of its cells' rows. */
+SIMD_INLINE void add_particle(const assembly *a, const fibre_lanes *l, int lane, const solid_block *b, kernel_kind kernel) {
+    int nodes = kernel == KERNEL_QUADRATIC ? 3 : 4, width = a->width;
+    double scale = (kernel == KERNEL_QUADRATIC ? 4.0 : 3.0) / a->state->definition.dx, gradient[64], direction[3];
+    real gamma[8];
+    int base[3], cell[3];
+    const vec u[3] = {l->at.u.x, l->at.u.y, l->at.u.z}, low[3] = {l->at.base.x, l->at.base.y, l->at.base.z};
+    const vec along[3] = {l->a.x, l->a.y, l->a.z};
+    double w[3][4], x[3][4];
+    for (int axis = 0; axis < 3; axis++) {
+        vec weight[4];
+        kernel_weights(kernel, u[axis], weight);
+        direction[axis] = (double)along[axis][lane];
+        base[axis] = (int)low[axis][lane];
+        cell[axis] = (int)floor((double)(low[axis][lane] + u[axis][lane]) - 0.5);
+        for (int n = 0; n < nodes; n++) w[axis][n] = (double)weight[n][lane], x[axis][n] = direction[axis] * ((double)n - (double)u[axis][lane]);
+    }
+    for (int i = 0; i < nodes; i++)
+        for (int j = 0; j < nodes; j++)
+            for (int n = 0; n < nodes; n++)
+                gradient[(i * 4 + j) * 4 + n] = scale * w[0][i] * w[1][j] * w[2][n] * (x[0][i] + x[1][j] + x[2][n]);
+    cell_weights(l, lane, gamma);
+    for (int c = 0; c < 8; c++) {
+        int at[3] = {cell[0] + (c >> 2), cell[1] + (c >> 1 & 1), cell[2] + (c & 1)}, block = 0, node = 0, first[3];
+        for (int axis = 0; axis < 3; axis++) {
+            int o = at[axis] < 0 ? -1 : at[axis] >= BLOCK ? 1 : 0;
+            block = block * 3 + o + 1;
+            node = node * BLOCK + at[axis] - o * BLOCK;
+            first[axis] = base[axis] - at[axis] - a->low;
+        }
+        int32_t number = a->number[(int64_t)b->neighbour[block] * BLOCK_NODES + node];
+        if (number < 0) continue;
+        double *row = a->rows + (size_t)number * row_size(a), share = (double)(l->volume[lane] * gamma[c]);
+        for (int i = 0; i < nodes; i++)
+            for (int j = 0; j < nodes; j++)
+                for (int n = 0; n < nodes; n++) {
+                    double *to = row + (((first[0] + i) * width + first[1] + j) * width + first[2] + n) * 3;
+                    for (int k = 0; k < 3; k++) to[k] += share * gradient[(i * 4 + j) * 4 + n] * direction[k];
+                }
+    }
+}
+
+static void add_particles(const assembly *a) {
+    const solid *s = a->state;
+    kernel_kind kernel = s->definition.kernel;
+    for (int32_t i = 0; i < s->block_count; i++) {
+        const solid_block *b = &s->blocks[i];
+        FOR_EACH_PART(s, b, {
+            fibre_lanes l = lanes_load(s, kernel, pack, part);
+            for (int lane = 0; lane < LANES_OF(t, first); lane++) add_particle(a, &l, lane, b, kernel);
+        })
+    }
+}
+
+static void find_near(assembly *a) {
+    const solid *s = a->state;
+    for (int32_t slot = 0; slot < s->slot_count; slot++)
+        for (int n = 0; n < 125; n++) {
+            int32_t c[3] = {s->slot_coordinate[slot][0] + n / 25 - 2, s->slot_coordinate[slot][1] + n / 5 % 5 - 2,
+                            s->slot_coordinate[slot][2] + n % 5 - 2};
+            a->near[slot][n] = order_rank(s, block_key(c));
+        }
+}
+
+/* Index [slot][node] of what lies at an offset from a place in a slot, −1 outside the grid. */
+static int64_t index_at(const assembly *a, int32_t slot, const int at[3]) {
+    int block = 0, node = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        int o = (at[axis] + 2 * BLOCK) / BLOCK - 2;
+        block = block * 5 + o + 2;
+        node = node * BLOCK + at[axis] - o * BLOCK;
+    }
+    int32_t near = a->near[slot][block];
+    return near < 0 ? -1 : (int64_t)near * BLOCK_NODES + node;
+}
+
+/* M⁻¹ times a cell's row, holds obeyed. */
+static void respond(const assembly *a, int32_t slot, const int cell[3], const double *row, double *out) {
+    const solid *s = a->state;
+    int width = a->width;
+    for (int n = 0; n < width * width * width; n++) {
+        int at[3] = {cell[0] + a->low + n / (width * width), cell[1] + a->low + n / width % width, cell[2] + a->low + n % width};
+        int64_t index = index_at(a, slot, at);
+        real mass = index < 0 ? 0 : s->grid[index * NODE + 3];
+        double *v = out + 3 * n;
+        for (int k = 0; k < 3; k++) v[k] = mass > 0 ? row[3 * n + k] * a->dt / (double)mass : 0;
+        if (index >= 0) hold_project(&s->constraint.holds[index], v);
+    }
+}
+
+/* Σ over the nodes that two cells share. */
+static double product(const assembly *a, const double *response, const double *row, const int offset[3]) {
+    int width = a->width, from[3], to[3];
+    for (int axis = 0; axis < 3; axis++) {
+        from[axis] = offset[axis] > 0 ? offset[axis] : 0;
+        to[axis] = offset[axis] < 0 ? width + offset[axis] : width;
+    }
+    double sum = 0;
+    for (int i = from[0]; i < to[0]; i++)
+        for (int j = from[1]; j < to[1]; j++) {
+            const double *x = response + ((i * width + j) * width) * 3;
+            const double *y = row + (((i - offset[0]) * width + j - offset[1]) * width - offset[2]) * 3;
+            for (int k = 3 * from[2]; k < 3 * to[2]; k++) sum += x[k] * y[k];
+        }
+    return sum;
+}
+
+static void add_column(const assembly *a, int32_t slot, int n, const double *response, sparse_matrix *m, int64_t *used) {
+    int reach = a->width - 1, cell[3] = {n / 16, n / 4 % 4, n % 4};
+    int32_t own = a->number[(int64_t)slot * BLOCK_NODES + n];
+    m->start[own] = (int32_t)*used;
+    for (int i = -reach; i <= reach; i++)
+        for (int j = -reach; j <= reach; j++)
+            for (int k = -reach; k <= reach; k++) {
+                int offset[3] = {i, j, k}, at[3] = {cell[0] + i, cell[1] + j, cell[2] + k};
+                int64_t index = index_at(a, slot, at);
+                int32_t other = index < 0 ? -1 : a->number[index];
+                if (other < own) continue;
+                m->row[*used] = other;
+                m->value[(*used)++] = product(a, response, a->rows + (size_t)other * row_size(a), offset);
+            }
+}
+
+static status fill(const assembly *a, sparse_matrix *m, report *r) {
+    const solid *s = a->state;
+    double *response = memory_allocate_array(row_size(a), sizeof *response);
+    if (!response) return report_set(r, STATUS_SYSTEM, "out of memory for the matrix of inextensible fibres");
+    int64_t used = 0;
+    for (int32_t slot = 0; slot < s->slot_count; slot++)
+        for (int n = 0; n < BLOCK_NODES; n++) {
+            int32_t own = a->number[(int64_t)slot * BLOCK_NODES + n];
+            if (own < 0) continue;
+            int cell[3] = {n / 16, n / 4 % 4, n % 4};
+            respond(a, slot, cell, a->rows + (size_t)own * row_size(a), response);
+            int64_t first = used;
+            add_column(a, slot, n, response, m, &used);
+            for (int64_t e = first; e < used; e++)
+                if (m->row[e] == own) m->value[e] += (double)constraint_relaxation(s, slot, n);
+        }
+    m->start[m->size] = (int32_t)used;
+    memory_free(response, row_size(a) * sizeof *response);
+    return STATUS_OK;
+}
+
+status constraint_assemble(const solid *s, real dt, const int32_t *number, int32_t cells, sparse_matrix *m, report *r) {
+    bool quadratic = s->definition.kernel == KERNEL_QUADRATIC;
+    assembly a = {.state = s, .number = number, .dt = (double)dt, .low = quadratic ? -1 : -2, .width = quadratic ? 4 : 6};
+    int64_t stencil = (int64_t)(2 * a.width - 1) * (2 * a.width - 1) * (2 * a.width - 1), entries = cells * (stencil / 2 + 1);
+    if (entries >= INT32_MAX) return report_set(r, STATUS_SYSTEM, "%d cells of inextensible fibres are too many for a matrix", cells);
+    a.rows = memory_allocate_array((size_t)cells, row_size(&a) * sizeof *a.rows);
+    a.near = memory_allocate_array((size_t)s->slot_count, sizeof *a.near);
+    status code = STATUS_OK;
+    if (!a.rows || !a.near || !sparse_allocate(m, cells, entries))
+        code = report_set(r, STATUS_SYSTEM, "out of memory for the matrix of %d cells of inextensible fibres", cells);
+    if (code == STATUS_OK) {
+        find_near(&a);
+        add_particles(&a);
+        code = fill(&a, m, r);
+    }
+    memory_free(a.rows, a.rows ? (size_t)cells * row_size(&a) * sizeof *a.rows : 0);
+    memory_free(a.near, a.near ? (size_t)s->slot_count * sizeof *a.near : 0);
+    return code;
+}

@@ -1,0 +1,113 @@
+/* The inextensible solve's preconditioner: when to make one, of what, and which cells it knows. */
+#include "base/memory.h"
+#include "solid/inextensible.h"
+#include "solid/order.h"
+
+#include <math.h>
+
+enum {
+    PATIENCE = 40, /* iterations with Jacobi's before AUTO looks for better */
+    STALE = 25,    /* iterations with a library's before it is made anew */
+};
+
+/* Multiplications that a factorisation may take: some seconds. */
+static const double WORK_LIMIT = 2e10;
+
+/* The matrix is nearly singular: tensions that alternate from cell to cell pull at nothing, and cells among held nodes have no row at
+ * all. Its diagonal grows by this share of itself and of the largest, so that the preconditioner does not answer them with
+ * noise. */
+static const double SHIFT = 1e-9, SHIFT_OF_LARGEST = 1e-9;
+
+bool constraint_is_slow(const solid *s, int since, int built) {
+    const fibre_constraint *c = &s->constraint;
+    if (c->refused || c->solver == CONSTRAINT_JACOBI || built > 1) return false;
+    if (c->preconditioner) return since == STALE;
+    return since == (c->solver == CONSTRAINT_AUTO ? PATIENCE : 0);
+}
+
+void constraint_forget(solid *s) {
+    fibre_constraint *c = &s->constraint;
+    sparse_destroy(c->preconditioner);
+    memory_free(c->vector, c->vector ? 2 * (size_t)c->vector_size * sizeof *c->vector : 0);
+    memory_free(c->unknown, c->unknown ? (size_t)c->vector_size * sizeof *c->unknown : 0);
+    c->preconditioner = NULL, c->vector = NULL, c->unknown = NULL;
+    c->vector_size = c->unknowns = 0;
+    c->refused = false;
+}
+
+static int32_t count_unknowns(const solid *s) {
+    int32_t count = 0;
+    for (int32_t i = 0; i < s->constraint.slot_count; i++)
+        for (int n = 0; n < BLOCK_NODES; n++) count += constraint_weight(s, s->constraint.slots[i], n) > 0;
+    return count;
+}
+
+/* Numbers the cells that hold fibres, in the order of slots. */
+static status number_unknowns(solid *s, report *r) {
+    fibre_constraint *c = &s->constraint;
+    constraint_forget(s);
+    size_t count = (size_t)count_unknowns(s);
+    c->vector = memory_allocate_array(2 * count, sizeof *c->vector);
+    c->unknown = memory_allocate_array(count, sizeof *c->unknown);
+    c->vector_size = (int32_t)count;
+    if (!c->vector || !c->unknown) return report_set(r, STATUS_SYSTEM, "out of memory for %d cells of inextensible fibres", (int)count);
+    for (int64_t i = 0; i < (int64_t)s->slot_count * BLOCK_NODES; i++) c->number[i] = -1;
+    for (int32_t i = 0; i < c->slot_count; i++)
+        for (int n = 0; n < BLOCK_NODES; n++) {
+            if (!(constraint_weight(s, c->slots[i], n) > 0)) continue;
+            const int32_t *block = s->slot_coordinate[c->slots[i]], at[3] = {n / 16, n / 4 % 4, n % 4};
+            for (int axis = 0; axis < 3; axis++) c->unknown[c->unknowns][axis] = block[axis] * BLOCK + at[axis];
+            c->number[(int64_t)c->slots[i] * BLOCK_NODES + n] = c->unknowns++;
+        }
+    c->mapped = true;
+    return STATUS_OK;
+}
+
+status constraint_map(solid *s, report *r) {
+    (void)r;
+    fibre_constraint *c = &s->constraint;
+    if (c->mapped || !c->preconditioner) return STATUS_OK;
+    for (int64_t i = 0; i < (int64_t)s->slot_count * BLOCK_NODES; i++) c->number[i] = -1;
+    for (int32_t i = 0; i < c->unknowns; i++) {
+        int32_t block[3], node = 0;
+        for (int axis = 0; axis < 3; axis++) {
+            block[axis] = (c->unknown[i][axis] + 4 * BLOCK_LIMIT) / BLOCK - BLOCK_LIMIT;
+            node = node * BLOCK + c->unknown[i][axis] - block[axis] * BLOCK;
+        }
+        int32_t slot = order_rank(s, block_key(block));
+        if (slot >= 0) c->number[(int64_t)slot * BLOCK_NODES + node] = i;
+    }
+    c->mapped = true;
+    return STATUS_OK;
+}
+
+static void shift_diagonal(sparse_matrix *m) {
+    double largest = 0;
+    for (int pass = 0; pass < 2; pass++)
+        for (int32_t column = 0; column < m->size; column++)
+            for (int32_t e = m->start[column]; e < m->start[column + 1]; e++) {
+                if (m->row[e] != column) continue;
+                if (pass == 0) largest = fmax(largest, m->value[e]);
+                else m->value[e] += SHIFT * m->value[e] + SHIFT_OF_LARGEST * largest;
+            }
+}
+
+status constraint_precondition(solid *s, real dt, report *r) {
+    fibre_constraint *c = &s->constraint;
+    sparse_matrix m = {0};
+    status code = number_unknowns(s, r);
+    if (code == STATUS_OK) code = constraint_assemble(s, dt, c->number, c->unknowns, &m, r);
+    if (code == STATUS_OK) {
+        shift_diagonal(&m);
+        bool automatic = c->solver == CONSTRAINT_AUTO;
+        if (c->solver != CONSTRAINT_AMG && sparse_available(SPARSE_DIRECT))
+            code = sparse_create(SPARSE_DIRECT, &m, automatic ? WORK_LIMIT : 0, &c->preconditioner, r);
+        if (code == STATUS_OK && !c->preconditioner && c->solver != CONSTRAINT_DIRECT && sparse_available(SPARSE_AMG))
+            code = sparse_create(SPARSE_AMG, &m, 0, &c->preconditioner, r);
+    }
+    sparse_free(&m);
+    if (code != STATUS_OK) return code;
+    c->refused = !c->preconditioner;
+    c->factorisations++;
+    return STATUS_OK;
+}

@@ -107,6 +107,7 @@ typedef struct fibre_constraint {
     int64_t solves, iterations, factorisations;
     struct sparse_solver *preconditioner; /* NULL: Jacobi's */
     bool refused;  /* no library is worth its work for now */
+    int eager;     /* solves to come that make a preconditioner at once */
     bool mapped;   /* `number` belongs to the slots as they are */
     double *vector;        // [2][vector_size], what the preconditioner reads and writes
     int32_t (*unknown)[3]; // [vector_size], cells in grid coordinates

@@ -50,7 +50,7 @@ static void define(simulation *s, int threads, solid_definition *d) {
                             .transfer_ratio = from_scene->transfer_ratio, .kernel = from_scene->kernel, .laplacian = from_scene->laplacian,
                             .count = s->particles.count, .position = s->particles.position, .velocity = s->particles.velocity,
                             .volume = s->particles.volume, .fibre1 = s->particles.fibre1, .fibre2 = s->particles.fibre2,
-                            .material = s->particles.material};
+                            .damage = s->particles.damage, .material = s->particles.material};
     int gravity = effect_index("gravity");
     if (from_scene->effects[gravity].on) memcpy(d->gravity, from_scene->effects[gravity].value[0], sizeof d->gravity);
     define_materials(s, d);
@@ -108,7 +108,8 @@ static void drop_loading_arrays(body_particles *p) {
     memory_free(p->material, n);
     memory_free(p->fibre1, row_bytes);
     memory_free(p->fibre2, row_bytes);
-    p->velocity = p->volume = p->fibre1 = p->fibre2 = NULL;
+    memory_free(p->damage, n * sizeof(double));
+    p->velocity = p->volume = p->fibre1 = p->fibre2 = p->damage = NULL;
     p->material = NULL;
 }
 

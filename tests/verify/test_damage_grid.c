@@ -18,29 +18,6 @@ static const shape *bar(arena *a) {
     return shape_box(a, (const double[]){-0.5 * length_of_bar, -w, -w}, (const double[]){0.5 * length_of_bar, w, w});
 }
 
-/* A bar at rest whose particles within |x| < 1 are broken and driven. */
-static simulation *banded_bar(scene *s, double dx, report *r) {
-    simulation *sim = test_simulation(s, 64, "plain", 2);
-    solid *state;
-    const solid_engine *engine = simulation_engine(sim, &state);
-    record_list saved = {0};
-    CHECK(engine->save(state, &saved, r) == STATUS_OK);
-    const int32_t *tiles = record_find(&saved, "solid/tiles")->data, *blocks = record_find(&saved, "solid/blocks")->data;
-    const double *x = record_find(&saved, "solid/position")->data;
-    double *d = record_find(&saved, "solid/damage")->data, *H = record_find(&saved, "solid/damage_history")->data;
-    for (int64_t t = 0; t < record_find(&saved, "solid/tiles")->count; t++)
-        for (int32_t p = 0; p < tiles[5 * t + 3] * PACK; p++) {
-            int64_t pack = tiles[5 * t + 2] + p / PACK;
-            double place = dx * (x[pack * 3 * PACK + p % PACK] + BLOCK * blocks[5 * tiles[5 * t]]);
-            if (fabs(place) > 1) continue;
-            d[pack * PACK + p % PACK] = 1;
-            H[pack * PACK + p % PACK] = 1e6; /* the implicit form would let an undriven band relax on the nodes */
-        }
-    CHECK(engine->restore(state, &saved, r) == STATUS_OK);
-    record_clear(&saved);
-    return sim;
-}
-
 /* Relaxes the band, as wide to each side as l0, and compares with the profile outside: fitted decay length over l0, and the largest
  * error. (A band narrower than a kernel is a peak on the nodes, concave around it, where d does not grow.) */
 static void relax_band(double cells, bool implicit, kernel_kind laplacian, double *decay, double *error) {
@@ -57,7 +34,8 @@ static void relax_band(double cells, bool implicit, kernel_kind laplacian, doubl
     test_set(s, "damage", "form", implicit ? 1 : 0);
     test_set(s, "damage", "tolerance", 1e-10);
     report r;
-    simulation *sim = banded_bar(s, dx, &r);
+    s->bodies[0].notches = shape_box(s->memory, (const double[]){-1, -9, -9}, (const double[]){1, 9, 9});
+    simulation *sim = test_simulation(s, 64, "plain", 2);
     double step = implicit ? 0.5 : 0.9 / (1 + 12 * cells * cells);
     for (double t = 0; t < 8; t += step) CHECK(simulation_step(sim, step, &r) == STATUS_OK);
     solid *state;
@@ -96,6 +74,35 @@ static void a_band_relaxes_to_its_exponential(void) {
             snprintf(text, sizeof text, "the same: order of the largest error in dx, %s", names[implicit][laplacian]);
             CHECK_ROW("METHOD 2", text, 1, log2(coarse_error / error), 0.35);
         }
+}
+
+/* Notches break exactly what lies inside, and one that catches nothing is refused. */
+static void notches_break_what_lies_inside(void) {
+    length_of_bar = 4, width_of_bar = 1;
+    scene *s = test_scene(bar, 1, 0.3, 1);
+    s->particles = 3000;
+    test_set(s, "damage", "sigma_c", 1);
+    const shape *notch = s->bodies[0].notches = shape_sphere(s->memory, (const double[]){1, 0.5, 0}, 0.4);
+    simulation *sim = test_simulation(s, 32, "plain", 1);
+    solid *state;
+    const solid_engine *engine = simulation_engine(sim, &state);
+    int64_t n = simulation_get_plan(sim)->particles, inside = 0;
+    double *x = memory_allocate((size_t)n * 24), *d = memory_allocate((size_t)n * 8);
+    engine->read(state, "position", x);
+    engine->read(state, "damage", d);
+    for (int64_t i = 0; i < n; i++) {
+        double distance = shape_distance(notch, x + 3 * i);
+        if (fabs(distance) > 1e-5) CHECK(d[i] == (distance < 0)); /* positions are f32 */
+        inside += distance < 0;
+    }
+    CHECK(inside > 50 && inside < n / 10);
+    memory_free(x, (size_t)n * 24), memory_free(d, (size_t)n * 8);
+    simulation_destroy(sim);
+    s->bodies[0].notches = shape_sphere(s->memory, (const double[]){9, 9, 9}, 0.1);
+    simulation_options o = {.threads = 1, .precision = 32, .simd = "plain"};
+    report r;
+    CHECK(simulation_create(s, &o, &sim, &r) == STATUS_INPUT && strcmp(r.key, "notches") == 0);
+    scene_destroy(s);
 }
 
 static const shape *cube(arena *a) {
@@ -240,6 +247,7 @@ static void the_phase_field_is_its_closed_form(void) {
 
 int main(void) {
     RUN(the_phase_field_is_its_closed_form);
+    RUN(notches_break_what_lies_inside);
     RUN(a_band_relaxes_to_its_exponential);
     RUN(the_operator_is_symmetric_positive_definite);
     RUN(explicit_and_implicit_agree);

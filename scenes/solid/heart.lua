@@ -29,7 +29,7 @@ local heart = half(-1) + half(1)
 local function grip(side)
   return {
     name     = side < 0 and "left" or "right",
-    shape    = s.box { center = { side * 0.6, 0.3, 0 }, size = { 0.76, 0.4, 1 } },
+    shape    = s.box { center = { side * 0.6, 0.4, 0 }, size = { 0.86, 0.5, 1 } },
     velocity = { side * p.pull, 0, 0 },
     stop     = p.until_t,
   }

@@ -6,8 +6,8 @@
 -- feet, the ropes' run along them.
 --
 --   variant    damage          ropes               what to look for
---   full       along fibres    stiff fibres        the toy splits along its fibres, from the lance up and down    (a)
---   isotropic  everywhere      stiff fibres        a round hole, as wide as the lance                             (b)
+--   full       along fibres    stiff fibres        a slit along the fibres, narrower than the lance               (a)
+--   isotropic  everywhere      stiff fibres        a wide wound, and the arms tear off across their fibres        (b)
 --
 -- The ropes have no damage: they give way, and pull the toy back.
 --
@@ -16,10 +16,10 @@ local s = require "sunder"
 
 local p = s.params {
   particles = 80000,
-  duration  = { 2, unit = "time", doc = "48 frames" },
+  duration  = { 1.5, unit = "time", doc = "36 frames" },
   fps       = 24,
-  speed     = { 0.3, unit = "length/time", doc = "of the lance", min = 0 },
-  radius    = { 0.04, unit = "length", doc = "of the lance; one thinner than a grid cell is not felt", min = 0.001, max = 0.1 },
+  speed     = { 0.5, unit = "length/time", doc = "of the lance", min = 0 },
+  radius    = { 0.05, unit = "length", doc = "of the lance; one thinner than a grid cell is not felt", min = 0.001, max = 0.1 },
   friction  = { 0.1, doc = "between the lance and the toy", min = 0, max = 10 },
   variant   = s.choice { "full", "isotropic" },
 }

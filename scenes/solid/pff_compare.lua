@@ -1,17 +1,18 @@
 -- PFF compare: the same notched block, torn by this engine's damage and by its rival's phase field (PFF-MPM).
 --
 -- Source: AnisoMPM (Wolper et al. 2020), Fig. 25; the rival is that of Wolper et al. 2019. The figure's numbers are not
--- given: the block and its jelly are those of sigma_eta.lua, without stiff fibres. The notch is cut without a gap: what
--- lies inside it starts broken.
+-- given: the block and its jelly are those of sigma_eta.lua. The notch is cut without a gap: what lies inside it starts
+-- broken.
 --
 --   variant      damage                            what to look for
 --   isotropic    of this engine, without fibres    a crack straight on from the notch
 --   pff          phase field                       the same crack
 --   anisotropic  of this engine, along fibres      a crack along the fibres, which the phase field cannot have
 --
--- The phase field has no critical stress but a toughness G: in a bar under tension it is half broken where the energy is
--- G/(4 l0), and G is chosen so that this is at the other's sigma_c. It is solved for on the grid at every step, which the
--- explicit form of the other need not: compare particle_steps_per_s of the two runs.
+-- The phase field has no critical stress but a toughness G. A bar of it, drawn slowly, carries E e/(1 + (e/e0)^2)^2 at a
+-- strain e, with E e0^2/2 = G/(4 l0): at most 9/(16 sqrt 3) E e0. G is chosen so that this is the other's sigma_c. The phase
+-- field is solved for on the grid at every step, which the explicit form of the other need not: compare particle_steps_per_s
+-- of the two runs.
 --
 -- Try:  sunder runs diff RUN RUN     after a run of each
 local s = require "sunder"
@@ -38,7 +39,8 @@ local sigma_c = 1.5 * mu * (stretch ^ 2 - 1) - mu * growth + 0.5 * lambda * grow
 
 local dx = (8 * wide * high * deep / p.particles) ^ (1 / 3)
 local l0 = dx / 2
-local toughness = 4 * l0 * (1 - residual) * sigma_c ^ 2 / (2 * E)
+local e0 = sigma_c / E * 16 * math.sqrt(3) / 9
+local toughness = 4 * l0 * (1 - residual) * E * e0 ^ 2 / 2
 
 local damage = { break_stretch = p.break_stretch, eta = 0.05, residual = residual, alpha = p.variant == "anisotropic" and -1 or 0 }
 local tilt = math.rad(p.angle)
@@ -66,6 +68,7 @@ return s.scene {
       material = {
         density = 2,
         elastic = { E = E, nu = nu, lame = "paper" },
+        fibres  = p.variant == "anisotropic" and { gamma = 10 } or false,
         damage  = p.variant ~= "pff" and damage or false,
         pff     = p.variant == "pff" and { toughness = toughness, length_scale = l0, residual = residual } or false,
       },

@@ -249,7 +249,11 @@ def test_implicit_and_explicit():
         print("  off the fibres:", round(turned(fast, slant)), round(turned(slow, slant)), " broken:", [round(broken(r), 3) for r in (fast, slow)])
         check(turned(fast, slant) < 15, f"implicit at eta 1e-9 follows the fibres: {fast['crack_normal']}")
         check(turned(slow, slant) < 15, f"explicit at eta 1e-3 follows the fibres: {slow['crack_normal']}")
-        check(broken(fast) > broken(slow) > 0, "a smaller eta runs further in the same time")
+        early = [box.series(run, "broken_fraction")[24] for run in (fast, slow)]
+        reach = max(y for (_, y, _), d in frames.damaged(fast) if d > 0.9)
+        print("  broken by frame 24:", [round(b, 4) for b in early], " highest broken:", round(reach, 3))
+        check(early[0] > 1.5 * early[1], f"a smaller eta runs sooner: {early}")
+        check(reach > 0.15, f"implicit at eta 1e-9 splits the block, up to the plate: {reach}")
         check(broken(fast) < 0.2, "and stays a crack")
 
 

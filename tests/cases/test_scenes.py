@@ -157,12 +157,35 @@ def test_every_scene_is_right():
 def test_tube_pull():
     slant, across = (-1, 1, 0), (1, 0, 0)
     with Box() as box:
-        runs = {v: box.run("tube_pull", None, 3000, variant=v) for v in ("full", "isotropic", "damage_only", "elastic_only")}
+        runs = {v: box.run("tube_pull", None, 5000, variant=v) for v in ("full", "isotropic", "damage_only", "elastic_only")}
         print("  degrees from the fibres' tear, from across:", {v: (round(turned(r, slant)), round(turned(r, across))) for v, r in runs.items()})
-        check(turned(runs["full"], slant) < 15, f"full tears along the fibres: {runs['full']['crack_normal']}")
+        check(turned(runs["full"], slant) < 12, f"full tears along the fibres: {runs['full']['crack_normal']}")
         check(turned(runs["isotropic"], across) < 10, f"isotropic tears across: {runs['isotropic']['crack_normal']}")
         check(turned(runs["full"], slant) < turned(runs["damage_only"], slant), "damage alone is guided more weakly")
         check(broken(runs["elastic_only"]) == 0 and runs["elastic_only"]["crack_normal"] is None, "without damage nothing is broken")
+
+
+def test_tube_compress():
+    with Box() as box:
+        shares = {}
+        for variant in ("full", "isotropic", "elastic_only"):
+            run = box.run("tube_compress", 30, 8000, variant=variant)
+            if variant == "elastic_only":
+                height = max(y for _, y, _ in frames.places(run, run["frames"]).values())
+                check(broken(run) == 0 and "damage" not in run["effects"], "without damage nothing breaks")
+                check(height < 0.5, f"and the tube folds under the crusher: {height}")
+                continue
+            # Damage's gradient in the wall: along the fibres, around, outwards.
+            sums = [0.0] * 3
+            for (x, y, z), (gx, gy, gz) in gradients(frames.damaged(run), run["dx"], (0, 1, 2)):
+                if 0.1 < y < 0.9:
+                    r = math.hypot(x, z)
+                    sums = [s + v * v for s, v in zip(sums, (gy, (gz * x - gx * z) / r, (gx * x + gz * z) / r))]
+            shares[variant] = [s / sum(sums) for s in sums]
+            check(broken(run) > 0.1, f"{variant} breaks")
+        print("  shares of damage's gradient along the wall, around, outwards:", {v: [round(s, 2) for s in w] for v, w in shares.items()})
+        check(shares["full"][0] < 0.25 and shares["full"][1] > 1.5 * shares["full"][0], f"full splits into staves, along its fibres: {shares}")
+        check(shares["isotropic"][0] > 1.5 * shares["isotropic"][1], f"isotropic crumbles from the top, across: {shares}")
 
 
 def test_disk_shoot():
@@ -236,7 +259,7 @@ def test_notched_block():
         print("  degrees off the fibres:", round(turned(soft, slant)), " frame of the first crack:", start, " broken:", [round(broken(r), 3) for r in (soft, tough, slow)])
         check(turned(soft, slant) < 15, f"the crack follows the fibres: {soft['crack_normal']}")
         check(start[0] is not None and (start[1] is None or start[1] > start[0]), f"a larger sigma_c breaks later: {start}")
-        check(broken(slow) < broken(soft), "a larger eta cracks more slowly")
+        check(start[2] > start[0] + 4, f"a larger eta cracks more slowly: {start}")
 
 
 def test_implicit_and_explicit():

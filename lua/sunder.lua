@@ -59,6 +59,7 @@ end
 ---@field fibres? Fibres
 ---@field velocity? OfPlace  at the start; at rest if absent
 ---@field sampling? "lattice"|"jittered"|"poisson"  "jittered" if absent
+---@field notches? Shape[]  what lies inside starts broken; for a gap without material subtract a shape: `shape - cut`
 
 --- A grip takes hold of whatever is inside a moving region.
 ---@class Grip

@@ -70,6 +70,25 @@ static void read_body_material(script *s, int index, const place *p, scene_body 
     lua_pop(L, 1);
 }
 
+/* A list of shapes, as their union. */
+static const shape *read_notches(script *s, int index, const place *p) {
+    const shape *shapes[SCENE_NOTCHES];
+    int count = read_list(s, index, p, SCENE_NOTCHES, "a list of shapes: notches = { s.box { … }, … }");
+    bool fine = count > 0;
+    for (int i = 1; i <= count; i++) {
+        place at = place_index(p, i);
+        lua_rawgeti(s->L, index, i);
+        shapes[i - 1] = read_shape(s, -1, &at);
+        fine = fine && shapes[i - 1];
+        lua_pop(s->L, 1);
+    }
+    if (!fine) return NULL;
+    scene_charge(s->L, 1 + count / 8);
+    const shape *made = shape_union(s->scene->memory, shapes, count);
+    if (!made) throw_memory(s->L);
+    return made;
+}
+
 static void read_solid(script *s, int index, const place *p, int number) {
     char name[SCRIPT_TEXT] = "";
     double sampling = SAMPLING_JITTERED, middle[3];
@@ -78,11 +97,12 @@ static void read_solid(script *s, int index, const place *p, int number) {
                       {.key = "material", .kind = FIELD_OTHER},
                       {.key = "fibres", .kind = FIELD_OTHER},
                       {.key = "velocity", .kind = FIELD_OTHER},
+                      {.key = "notches", .kind = FIELD_OTHER},
                       {.key = "sampling", .kind = FIELD_CHOICE, .choices = samplings, .number = &sampling}};
     scene_body *b = &s->scene->bodies[s->scene->body_count];
     s->body_places[s->scene->body_count++] = *p;
     *b = (scene_body){.material = -1};
-    bool table = read_fields(s, index, p, fields, 6) || lua_istable(s->L, index);
+    bool table = read_fields(s, index, p, fields, 7) || lua_istable(s->L, index);
     copy_name(s, p, name, "solid", number, b->name);
     if (!table) return;
     b->sampling = (sampling_kind)sampling;
@@ -95,6 +115,9 @@ static void read_solid(script *s, int index, const place *p, int number) {
     if (push_value(s->L, index, "fibres")) read_fibres(s, -1, &at, b->shape, &b->fibres);
     lua_pop(s->L, 1);
     function_field(s, index, p, "velocity", &b->velocity);
+    at = place_key(p, "notches");
+    if (push_value(s->L, index, "notches")) b->notches = read_notches(s, lua_gettop(s->L), &at);
+    lua_pop(s->L, 1);
 }
 
 /* ---- grips, colliders, walls ------------------------------------------------------------------------------------- */

@@ -11,10 +11,12 @@ typedef struct body_particles {
     double *position, *velocity; // [count][3]
     double *volume;              // [count]
     double *fibre1, *fibre2;     // [count][3], NULL when no body has that family
+    double *damage;              // [count], 1 inside a notch, else 0; NULL when no body has notches
     uint8_t *material, *body;    // [count]; material index, plus the number of materials where a grip protects the particle
 } body_particles;
 
-/* Samples everything. Errors: a body without volume or particles, a fibre direction that is zero (with the place), memory. */
+/* Samples everything. Errors: a body without volume or particles, a fibre direction that is zero (with the place), notches
+ * that hold no particle, memory. */
 status bodies_sample(const scene *s, body_particles *out, report *r);
 void bodies_free(body_particles *p);
 

@@ -141,6 +141,17 @@ static status check_fibres(const scene *s, const scene_body *b, report *r) {
     return report_input(r, s->file, 0, "fibres", "fibre directions", found, NULL);
 }
 
+/* What starts broken must be able to break. */
+static status check_notches(const scene *s, const scene_body *b, report *r) {
+    const scene_material *m = &s->materials[b->material];
+    if (!b->notches || find_supplier(m, "damage model", 0) >= 0) return STATUS_OK;
+    char suppliers[96], expected[160], found[160];
+    describe_suppliers("damage model", suppliers, sizeof suppliers);
+    snprintf(expected, sizeof expected, "a material that can break: %s", suppliers);
+    snprintf(found, sizeof found, "notches in body '%.48s', whose material '%.48s' cannot", b->name, m->name);
+    return report_input(r, s->file, 0, "notches", expected, found, NULL);
+}
+
 static status check_body(const scene *s, const scene_body *b, report *r) {
     double low[3], high[3];
     if (!b->shape) return report_input(r, s->file, 0, "shape", "a shape", "nothing", NULL);
@@ -150,7 +161,8 @@ static status check_body(const scene *s, const scene_body *b, report *r) {
             return report_input(r, s->file, 0, "shape", "a bounded shape for a body", "one without bounds", NULL);
     if (b->material < 0 || b->material >= s->material_count)
         return report_input(r, s->file, 0, "material", "a material", "nothing", NULL);
-    return check_fibres(s, b, r);
+    status code = check_fibres(s, b, r);
+    return code == STATUS_OK ? check_notches(s, b, r) : code;
 }
 
 static status check_numbers(const scene *s, report *r) {

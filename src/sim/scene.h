@@ -12,7 +12,7 @@
 
 #include <stdint.h>
 
-enum { SCENE_MATERIALS = 16, SCENE_BODIES = 32, SCENE_GRIPS = 32, SCENE_COLLIDERS = 32, SCENE_PARAMETERS = 512 };
+enum { SCENE_MATERIALS = 16, SCENE_BODIES = 32, SCENE_GRIPS = 32, SCENE_COLLIDERS = 32, SCENE_NOTCHES = 64, SCENE_PARAMETERS = 512 };
 
 /* A constant, or a function of `inputs` reals (time, or x y z) giving `outputs` reals. */
 typedef struct scene_function {
@@ -46,6 +46,7 @@ typedef struct scene_body {
     sampling_kind sampling;
     scene_fibres fibres;
     scene_function velocity; /* of place: initial velocity, 3 outputs; absent means at rest */
+    const shape *notches;    /* particles inside start broken; NULL: none */
 } scene_body;
 
 /* Grips take hold of grid nodes inside a moving region and prescribe their velocity. */

@@ -50,7 +50,7 @@ static void define(simulation *s, int threads, solid_definition *d) {
                             .transfer_ratio = from_scene->transfer_ratio, .kernel = from_scene->kernel, .laplacian = from_scene->laplacian,
                             .count = s->particles.count, .position = s->particles.position, .velocity = s->particles.velocity,
                             .volume = s->particles.volume, .fibre1 = s->particles.fibre1, .fibre2 = s->particles.fibre2,
-                            .material = s->particles.material};
+                            .damage = s->particles.damage, .material = s->particles.material};
     int gravity = effect_index("gravity");
     if (from_scene->effects[gravity].on) memcpy(d->gravity, from_scene->effects[gravity].value[0], sizeof d->gravity);
     define_materials(s, d);
@@ -100,7 +100,7 @@ static void make_plan(simulation *s, const solid_definition *d) {
     p->dt = s->frame_time / ceil(s->frame_time / wanted - 1e-9);
 }
 
-/* The engine has copied what it needs; rest positions and bodies stay for the measures. */
+/* The engine has copied what it needs; rest positions, bodies and notches stay for the measures. */
 static void drop_loading_arrays(body_particles *p) {
     size_t n = (size_t)p->count, row_bytes = 3 * sizeof(double) * n;
     memory_free(p->velocity, row_bytes);
@@ -320,7 +320,7 @@ static status measure_crack(simulation *s, simulation_measures *m, report *r) {
     if (!damage) return report_set(r, STATUS_SYSTEM, "out of memory for the crack measure");
     status code = STATUS_OK;
     if (s->engine->read(s->solid, "damage", damage))
-        code = crack_normal(s->particles.position, damage, s->particles.count, 1.3 * s->plan.dx, m->crack_normal, &m->has_crack, r);
+        code = crack_normal(s->particles.position, damage, s->particles.damage, s->particles.count, 1.3 * s->plan.dx, m->crack_normal, &m->has_crack, r);
     memory_free(damage, bytes);
     return code;
 }

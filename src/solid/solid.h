@@ -53,6 +53,7 @@ typedef struct solid_definition {
     const double *position, *velocity; /* [count][3] */
     const double *volume;              /* [count], rest volume */
     const double *fibre1, *fibre2;     /* [count][3], unit and orthogonal; NULL when no effect needs them */
+    const double *damage;              /* [count], at the start, 0 to 1; NULL: whole */
     const uint8_t *material;           /* [count] */
 } solid_definition;
 

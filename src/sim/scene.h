@@ -7,6 +7,7 @@
 
 #include "effect/effect.h"
 #include "effect/kinds.h"
+#include "geom/rigid.h"
 #include "geom/sampling.h"
 #include "geom/shape.h"
 

@@ -217,8 +217,9 @@ static void calibrate_bond(const sheet_definition *d, const sheet_body *b, const
     }
     if (n->coupling) {
         double mu = 1 / (2 * (1 + p->nu)), lambda = (3 * p->nu - 1) / (2 * (1 - p->nu * p->nu));
-        n->coupling[k] = p->state ? lambda / (4 * mu) / (1 / n->sum[i] + 1 / n->sum[j]) : 0;
-        n->dilation[k] = p->state ? 2 * share / (n->sum[i] * n->sum[i]) : 0;
+        /* √ of what the grain does in both, so that their product, an energy's gradient, has it once. */
+        n->coupling[k] = p->state ? lambda / (4 * mu) / (1 / n->sum[i] + 1 / n->sum[j]) / sqrt(stiffer) : 0;
+        n->dilation[k] = p->state ? 2 * share / (n->sum[i] * n->sum[i]) * sqrt(stiffer) : 0;
     }
 }
 

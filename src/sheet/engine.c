@@ -95,8 +95,9 @@ static void dilate(const pack_work *w) {
             for (int c = 0; c < 3; c++) r[c] = (far[c] - high[c]) + (far_low[c] - low[c]);
             vec square = vec_fma(r[0], r[0], vec_fma(r[1], r[1], r[2] * r[2]));
             vec eta = vec_sqrt(vec_max(square, vec_all((real)1e-30))) * vec_load(s->inverse + at) - 1;
-            vec q = eta - w->body->alpha * ((high[3] + far[3]) * (real)0.5);
-            sum = vec_fma(vec_load(s->dilation + at), q, sum);
+            vec theta = (high[3] + far[3]) * (real)0.5, q = eta - w->body->alpha * theta;
+            vec left = vec_sqrt(vec_max(1 - w->body->stiffness_loss * theta, vec_all(w->body->floor)));
+            sum = vec_fma(vec_load(s->dilation + at) * left, q, sum);
         }
         vec_store(s->dilatation + (int64_t)w->pack * PACK + first, sum);
     }

@@ -27,16 +27,16 @@ static bond_state examine_bond(const sheet *s, const body_constants *b, int64_t 
         square += r * r;
     }
     bond_state bond = {.s = sqrt(square) * (double)s->inverse[at], .history = s->history ? (double)s->history[at] : 0};
-    bond.swelling = (double)b->alpha * 0.5 * (theta_of(s, place) + theta_of(s, s->neighbour[at]));
+    double theta = 0.5 * (theta_of(s, place) + theta_of(s, s->neighbour[at]));
+    bond.swelling = (double)b->alpha * theta;
+    bond.left = fmax(1 - (double)b->stiffness_loss * theta, (double)b->floor);
     bond.strain = bond.s - 1 - (b->total ? 0 : bond.swelling);
     return bond;
 }
 
 /* Half the energy of a bond, which both its ends count: A_i (c W A_j) ψ/2, with c W A_j from the stiffness. */
 static double bond_energy(const sheet *s, const body_constants *b, int64_t place, int64_t at, const bond_state *bond) {
-    double theta = 0.5 * (theta_of(s, place) + theta_of(s, s->neighbour[at]));
-    double left = fmax(1 - (double)b->stiffness_loss * theta, (double)b->floor);
-    double modulus = (double)s->stiffness[at] * left * b->surface_density / (double)s->inverse[at];
+    double modulus = (double)s->stiffness[at] * bond->left * b->surface_density / (double)s->inverse[at];
     return 0.5 * (double)s->area[place] * modulus * sheet_effect_table[b->law_effect]->sheet->stored(b->law, bond);
 }
 
@@ -57,7 +57,7 @@ static void measure_bonds(const sheet *s, int32_t p, int lane, sheet_measures *m
         bond_state bond = examine_bond(s, b, place, at);
         m->stretch_max = fmax(m->stretch_max, bond.s - 1);
         m->elastic += bond_energy(s, b, place, at, &bond);
-        if (s->dilation) dilatation += (double)s->dilation[at] * (bond.s - 1 - bond.swelling) * s->weight_sum[place];
+        if (s->dilation) dilatation += (double)s->dilation[at] * sqrt(bond.left) * (bond.s - 1 - bond.swelling) * s->weight_sum[place];
     }
     m->elastic += 0.5 * b->dilation_modulus * dilatation * dilatation * (double)s->area[place];
     double share = total ? (double)broken / total : 0;

@@ -109,6 +109,7 @@ typedef struct pack_work {
 typedef struct bond_state {
     double s, strain; /* |r|/|r⁰|; s − 1 − α θ̄ or, by the total criterion, s − 1 */
     double swelling;  /* α θ̄ */
+    double left;      /* share of the stiffness that softening leaves */
     double history;
 } bond_state;
 

@@ -62,8 +62,13 @@ SIMD_INLINE void add_slot(const pack_work *w, int64_t at, unsigned flags, own_pl
     }
     vec force = bond_law(b->law, stretch, q, held, &own->stiffening);
     if (LAW_RUBBERY ? (flags & BOND_FEELS_THETA) != 0 : (flags & BOND_FEELS_THETA) && b->total) force = force - swelling;
-    if (flags & BOND_STATE) force = vec_fma(vec_load(s->coupling + at), own->dilatation + vec_gather(s->dilatation, index, 1), force);
-    vec pull = stiffness * left * force / length;
+    force = force * left;
+    if (flags & BOND_STATE) { /* √ of the softening here and √ in the dilatation: the force stays an energy's gradient */
+        vec coupling = vec_load(s->coupling + at);
+        if (flags & BOND_FEELS_THETA) coupling = coupling * vec_sqrt(left);
+        force = vec_fma(coupling, own->dilatation + vec_gather(s->dilatation, index, 1), force);
+    }
+    vec pull = stiffness * force / length;
     for (int c = 0; c < 3; c++) own->acceleration[c] = vec_fma(pull, r[c], own->acceleration[c]);
 }
 

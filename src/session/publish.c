@@ -98,14 +98,12 @@ static void fill_points(session *s, const double *position, const double *damage
 }
 
 status publish_frame(session *s, report *r) {
-    solid *state;
-    const solid_engine *engine = simulation_engine(s->simulation, &state);
     size_t n = (size_t)s->shown.particles;
     double *position = memory_allocate_array(n, 3 * sizeof *position), *damage = memory_allocate_array(n, sizeof *damage);
     status code = position && damage ? STATUS_OK : report_set(r, STATUS_SYSTEM, "out of memory for the picture");
     if (code == STATUS_OK) {
-        engine->read(state, "position", position);
-        bool damaged = engine->read(state, "damage", damage) > 0;
+        simulation_read(s->simulation, "position", position);
+        bool damaged = simulation_read(s->simulation, simulation_picture_field(s->simulation), damage) > 0;
         pthread_mutex_lock(&s->lock);
         session_snapshot *p = &s->shown;
         code = reserve_points(p, p->particles, r);

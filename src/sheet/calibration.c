@@ -12,7 +12,7 @@ static const double PI = 3.14159265358979323846;
  * is the square of this. Measured by tests/verify/test_sheet_fracture.c: at 8 and at 24 neighbours on the square lattice and at 6 and
  * 18 on the hexagonal one; powers of the number of neighbours in between. Random sets are taken as square. */
 static double trapping_factor(sheet_lattice lattice, int neighbours) {
-    double excess = lattice == SHEET_HEXAGONAL ? 1.4 * pow(8.0 / neighbours, 1.4) : 1.46 * pow(8.0 / neighbours, 1.44);
+    double excess = lattice == SHEET_HEXAGONAL ? 2.55 * pow(6.0 / neighbours, 0.606) : 1.48 * pow(8.0 / neighbours, 0.837);
     return sqrt(1 + excess);
 }
 

@@ -11,11 +11,11 @@ local s = require "sunder"
 
 local p = s.params {
   dx = 0.02, -- 10 000 particles
-  duration = 2.4,
+  duration = 4,
   fps = 50,
-  strain_rate = { 0.06, unit = "1/time", doc = "of the sheet, from both grips", min = 0 },
-  rate = { 0.1, unit = "1/time", doc = "of each source", min = 0 },
-  offset = { 0.2, unit = "length", doc = "of the sources from the notch's line" },
+  strain_rate = { 0.01, unit = "1/time", doc = "of the sheet, from both grips", min = 0 },
+  rate = { 0.008, unit = "1/time", doc = "of each source", min = 0 },
+  offset = { 0.15, unit = "length", doc = "of the sources from the notch's line" },
   R = { 1.5, unit = "spacings", doc = "reach of bonds", min = 1.2, max = 5 },
   variant = s.choice { "dry", "wet" },
 }
@@ -29,9 +29,9 @@ local sources
 if p.variant == "wet" then
   material.diffusion = { k = 0.01, C = 1 }
   material.swelling = 1
-  material.softening = { toughness = 10 }
-  local function spot(x, y) return { shape = s.sphere { center = { x, y, 0 }, radius = 0.15 }, rate = p.rate } end
-  sources = { spot(-0.2, p.offset), spot(0.45, -p.offset) }
+  material.softening = { toughness = 40 }
+  local function spot(x, y) return { shape = s.sphere { center = { x, y, 0 }, radius = 0.12 }, rate = p.rate } end
+  sources = { spot(0.05, p.offset), spot(0.6, -p.offset) }
 end
 
 local function grip(side)
@@ -42,6 +42,6 @@ end
 return s.scene {
   title = "Crack path",
   sheets = { { shape = s.rectangle { size = { 2, 2 } }, thickness = 0.02, radius = p.R, material = material, sources = sources,
-               notches = { { from = { -1.1, 0, 0 }, to = { -0.6, 0, 0 } } } } },
+               notches = { { from = { -1.1, 0, 0 }, to = { -0.3, 0, 0 } } } } },
   grips = { grip(-1), grip(1) },
 }

@@ -84,7 +84,7 @@ end
 ---@field thickness number
 ---@field spacing? number  of particles; from dx or particles if absent
 ---@field lattice? "square"|"hexagonal"|"scattered"  "square" if absent
----@field radius? number  bonds reach this many spacings, 1.2 to 5; 1.5 if absent
+---@field radius? number  bonds reach this many spacings, 1.2 to 6; 1.5 if absent
 ---@field surface? boolean  the shape's own surface instead of a plane's cut
 ---@field point? Vector  of the plane; the origin if absent
 ---@field normal? Axis  of the plane; z if absent

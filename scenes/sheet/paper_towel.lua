@@ -8,7 +8,7 @@
 local s = require "sunder"
 
 local p = s.params {
-  dx = 0.03, -- 4 500 particles
+  dx = 0.04, -- 2 500 particles
   duration = 1.2,
   fps = 60,
   pull = { 0.12, unit = "length/time", doc = "speed of each side", min = 0 },
@@ -28,7 +28,7 @@ end
 
 return s.scene {
   title = "Paper towel",
-  sheets = { { shape = s.rectangle { size = { 2, 2 } }, thickness = 0.03, material = s.recipe("paper_towel", wet and water or {}),
+  sheets = { { shape = s.rectangle { size = { 2, 2 } }, thickness = 0.04, material = s.recipe("paper_towel", wet and water or {}),
                grain = s.fibres.direction { 0, 1, 0 },
                notches = { { from = { 0, 0.7, 0 }, to = { 0, 1.1, 0 } } },
                sources = wet and { { spots = p.patches, radius = 0.2, rate = p.rate, stop = 0.5 } } or nil } },

@@ -81,7 +81,7 @@ void read_sheet(script *s, int index, const place *p, int number) {
                       {.key = "material", .kind = FIELD_OTHER},
                       {.key = "thickness", .kind = FIELD_SIZE, .required = true, .number = &b->thickness},
                       {.key = "spacing", .kind = FIELD_SIZE, .number = &b->spacing},
-                      {.key = "radius", .kind = FIELD_REAL, .number = &b->radius, .minimum = 1.2, .maximum = 5},
+                      {.key = "radius", .kind = FIELD_REAL, .number = &b->radius, .minimum = 1.2, .maximum = 6},
                       {.key = "lattice", .kind = FIELD_CHOICE, .choices = lattices, .number = &lattice},
                       {.key = "surface", .kind = FIELD_FLAG, .number = &surface},
                       {.key = "point", .kind = FIELD_VECTOR, .number = b->region.point},

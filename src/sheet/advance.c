@@ -26,13 +26,15 @@ void sheet_for_packs(sheet *s, real dt, void (*stage)(const pack_work *w)) {
     parallel_for(s->threads, s->group_count, 4, visit_group, &c);
 }
 
-void sheet_break_bonds(sheet *s, int64_t first, unsigned lanes) {
+void sheet_break_bonds(sheet *s, int64_t first, unsigned lanes, group_result *result) {
     for (int i = 0; i < VEC_LANES; i++) {
         if (!(lanes >> i & 1)) continue;
         s->stiffness[first + i] = 0;
         s->history[first + i] = BROKEN;
         if (s->conduct) s->conduct[first + i] = 0;
         if (s->dilation) s->dilation[first + i] = 0;
+        if (s->laplace) s->laplace[first + i] = 0;
+        result->broken++;
     }
 }
 

@@ -215,6 +215,7 @@ static void calibrate_bond(const sheet_definition *d, const sheet_body *b, const
         double kappa = p->diffuses ? 0.5 * (own_diffusivity(p, n->sum[i], d->area[i]) + own_diffusivity(p, n->sum[j], d->area[j])) : 0;
         n->conduct[k] = p->diffuses ? kappa * share / (length * length * density * p->capacity) : 0;
     }
+    if (n->laplace) n->laplace[k] = p->bending > 0 ? 2 * (1 / n->sum[i] + 1 / n->sum[j]) * share / (length * length) : 0;
     if (n->coupling) {
         double mu = 1 / (2 * (1 + p->nu)), lambda = (3 * p->nu - 1) / (2 * (1 - p->nu * p->nu));
         /* √ of what the grain does in both, so that their product, an energy's gradient, has it once. */
@@ -226,14 +227,16 @@ static void calibrate_bond(const sheet_definition *d, const sheet_body *b, const
 static void calibrate_body(const sheet_definition *d, const sheet_plan *p, int body, sheet_network *n) {
     const sheet_body *b = &d->bodies[body];
     for (int64_t i = b->first; i < b->first + b->count; i++) {
-        double momentum = 0, diffusion = 0;
+        double momentum = 0, diffusion = 0, laplace = 0;
         for (int64_t k = n->start[i]; k < n->start[i + 1]; k++) {
             calibrate_bond(d, b, p, n, i, k);
             momentum += n->stiffness[k] / (2 * n->length[k]);
             if (n->conduct) diffusion += n->conduct[k];
+            if (n->laplace) laplace += n->laplace[k];
         }
         n->momentum_bound = fmax(n->momentum_bound, momentum * state_bound(p));
         n->diffusion_bound = fmax(n->diffusion_bound, diffusion);
+        n->bending_bound = fmax(n->bending_bound, laplace * sqrt(p->bending / (d->materials[b->material].density * b->thickness)));
     }
 }
 
@@ -256,7 +259,7 @@ status network_calibrate(const sheet_definition *d, const sheet_plan *plans, she
         n->sum[i] = 0;
         for (int64_t k = n->start[i]; k < n->start[i + 1]; k++) n->sum[i] += n->weight[k] * d->area[n->neighbour[k]];
     }
-    n->momentum_bound = n->diffusion_bound = 0;
+    n->momentum_bound = n->diffusion_bound = n->bending_bound = 0;
     for (int b = 0; b < d->body_count; b++) {
         const sheet_plan *p = &plans[d->bodies[b].material];
         status code = calibrate_interior(d, p, b, n, r);

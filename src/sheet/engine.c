@@ -37,7 +37,8 @@ static void make_constants(sheet *s) {
         *b = (body_constants){.alpha = (real)p->alpha, .total = p->total, .toughness_softens = p->toughness_softens,
                               .stiffness_loss = (real)p->stiffness_loss, .toughness_loss = (real)p->toughness_loss,
                               .stretch_loss = (real)p->stretch_loss, .floor = (real)p->floor, .decay = (real)p->decay,
-                              .damping = (real)p->damping, .drag = (real)(p->drag / surface), .surface_density = surface,
+                              .damping = (real)p->damping, .bending = (real)(p->bending / surface), .contact_reach = p->contact_distance * body->spacing,
+                              .contact_stiffness = p->contact_stiffness * p->E * body->thickness, .drag = (real)(p->drag / surface), .surface_density = surface,
                               .heat = surface * p->capacity,
                               .dilation_modulus = p->state ? p->E * body->thickness * (3 * p->nu - 1) / (2 * (1 - p->nu * p->nu)) : 0};
         for (int c = 0; c < 3; c++) b->wind[c] = (real)p->wind[c];
@@ -46,6 +47,9 @@ static void make_constants(sheet *s) {
         for (int e = 0; e < SHEET_EFFECTS; e++) {
             if (!material->effects[e].on || !(s->mask >> e & 1) || !sheet_effect_table[e]->sheet->bonds) continue;
             b->law_effect = e;
+            double mass = surface * body->spacing * body->spacing; /* six neighbours at once: √(Σ K/2m) */
+            if (k == 0) s->contact_bound = 0;
+            s->contact_bound = fmax(s->contact_bound, sqrt(6 * b->contact_stiffness / (2 * mass)));
             if (sheet_effect_table[e]->sheet->constants) sheet_effect_table[e]->sheet->constants(p, &s->calibration[k], b->law);
         }
     }
@@ -62,6 +66,7 @@ static status build(sheet *s, bool first, report *r) {
         memcpy(s->calibration, n.calibration, sizeof s->calibration);
         s->momentum_bound = n.momentum_bound;
         s->diffusion_bound = n.diffusion_bound;
+        s->bending_bound = n.bending_bound;
         if (first) code = sheet_layout(s, &n, r);
         else sheet_fill_bonds(s, &n);
         make_constants(s);
@@ -111,6 +116,8 @@ static void pull(const pack_work *w) {
 
 static void destroy(sheet *s) {
     if (!s) return;
+    for (int e = 0; e < SHEET_EFFECTS; e++)
+        if (sheet_effect_table[e]->sheet->release) sheet_effect_table[e]->sheet->release(s);
     sheet_layout_free(s);
     memory_free(s, sizeof *s);
 }
@@ -144,6 +151,8 @@ static void limits(const sheet *s, double *limit) {
     double momentum = 1 / sqrt(s->momentum_bound * s->stiffening);
     for (int e = 0; e < SHEET_EFFECTS; e++)
         if ((s->mask >> e & 1) && sheet_effect_table[e]->sheet->bonds) limit[e] = momentum;
+    if (s->bending_bound > 0) limit[SHEET_EFFECT_bending] = 1 / s->bending_bound;
+    if (s->contact_bound > 0) limit[SHEET_EFFECT_self_contact] = 1 / s->contact_bound;
     if (s->diffusion_bound > 0) limit[SHEET_EFFECT_diffusion] = 1 / s->diffusion_bound;
 }
 
@@ -175,6 +184,7 @@ static status reduce_results(sheet *s, double dt, sheet_fault *fault, report *r)
         const group_result *result = &s->results[g];
         s->stiffening = fmax(s->stiffening, (double)result->stiffening);
         s->grip_work += result->grip_work;
+        s->broken_since += result->broken;
         for (int c = 0; c < 3; c++) s->grip_impulse[c] += result->grip_impulse[c];
         if (result->fault) return blame(s, result->fault - 1, dt, fault, r);
     }
@@ -186,7 +196,8 @@ static status step(sheet *s, double time, double dt, sheet_fault *fault, report 
     sheet_take_hold(s);
     reset_results(s);
     for (int e = 0; e < SHEET_EFFECTS; e++)
-        if ((s->mask >> e & 1) && sheet_effect_table[e]->sheet->before) sheet_effect_table[e]->sheet->before(s, (real)dt);
+        if ((s->mask >> e & 1) && sheet_effect_table[e]->sheet->before && sheet_effect_table[e]->sheet->before(s, (real)dt, r) != STATUS_OK)
+            return r->code;
     double t1 = now();
     if (state_based(s)) sheet_for_packs(s, (real)dt, dilate);
     sheet_for_packs(s, (real)dt, pull);

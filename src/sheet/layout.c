@@ -113,10 +113,31 @@ static void load_bond(sheet *s, const sheet_network *n, int64_t at, int64_t k) {
     if (s->limit) s->limit[at] = (real)n->limit[k];
     if (s->history && broken) s->history[at] = BROKEN;
     if (s->conduct) s->conduct[at] = broken ? 0 : (real)n->conduct[k];
+    if (s->laplace) s->laplace[at] = broken ? 0 : (real)n->laplace[k];
     if (s->coupling) {
         s->coupling[at] = (real)n->coupling[k];
         s->dilation[at] = broken ? 0 : (real)n->dilation[k];
     }
+}
+
+/* Curvature is known where all bonds are left and lie evenly: Σ laplace r⁰ = 0. There `whole` is Σ laplace, as the loop adds it. */
+static void mark_whole(sheet *s, const sheet_network *n, int32_t p, int lane) {
+    int64_t i = s->id[(int64_t)p * PACK + lane];
+    real *whole = &s->whole[(int64_t)p * PACK + lane];
+    double moment[3] = {0}, scale = 0;
+    real sum = 0;
+    *whole = -1;
+    if (i < 0) return;
+    const double *rest = s->definition.rest;
+    for (int64_t k = n->start[i]; k < n->start[i + 1]; k++) {
+        for (int c = 0; c < 3; c++) moment[c] += n->laplace[k] * (rest[3 * n->neighbour[k] + c] - rest[3 * i + c]);
+        scale += n->laplace[k] * n->length[k];
+    }
+    for (int32_t k = 0; k < s->packs[p].slots; k++) {
+        real laplace = s->laplace[((int64_t)s->packs[p].first_slot + k) * PACK + lane];
+        sum += laplace;
+    }
+    if (fabs(moment[0]) + fabs(moment[1]) + fabs(moment[2]) < 1e-6 * scale) *whole = sum;
 }
 
 void sheet_fill_bonds(sheet *s, const sheet_network *n) {
@@ -127,6 +148,7 @@ void sheet_fill_bonds(sheet *s, const sheet_network *n) {
             for (int64_t k = i < 0 ? 0 : n->start[i]; i >= 0 && k < n->start[i + 1]; k++)
                 if (n->weight[k] > 0) load_bond(s, n, at + (int64_t)used++ * PACK, k);
             for (; used < s->packs[p].slots; used++) clear_bond(s, at + (int64_t)used * PACK, self);
+            if (s->whole) mark_whole(s, n, p, lane);
             if (s->weight_sum) s->weight_sum[self] = i < 0 ? 1 : n->sum[i];
         }
 }
@@ -140,7 +162,7 @@ typedef struct array_row {
     bool wanted;
 } array_row;
 
-enum { ARRAYS = 18 };
+enum { ARRAYS = 22 };
 
 static void list_arrays(sheet *s, const sheet_network *n, array_row rows[ARRAYS]) {
     size_t packs = (size_t)s->pack_count, lanes = packs * PACK, bonds = (size_t)s->slot_count * PACK;
@@ -161,6 +183,8 @@ static void list_arrays(sheet *s, const sheet_network *n, array_row rows[ARRAYS]
         {(void **)&s->diffused_next, lanes, sizeof(real), n && n->conduct},
         {(void **)&s->dilatation, lanes, sizeof(real), n && n->coupling},
         {(void **)&s->weight_sum, lanes, sizeof(double), n && n->coupling},
+        {(void **)&s->curvature, lanes * 4, sizeof(real), n && n->laplace},
+        {(void **)&s->whole, lanes, sizeof(real), n && n->laplace},
         {(void **)&s->neighbour, bonds, sizeof *s->neighbour, true},
         {(void **)&s->inverse, bonds, sizeof(real), true},
         {(void **)&s->stiffness, bonds, sizeof(real), true},
@@ -168,6 +192,8 @@ static void list_arrays(sheet *s, const sheet_network *n, array_row rows[ARRAYS]
         {(void **)&s->history, bonds, sizeof(real), history},
         {(void **)&s->conduct, bonds, sizeof(real), n && n->conduct},
         {(void **)&s->coupling, bonds, sizeof(real), n && n->coupling},
+        {(void **)&s->dilation, bonds, sizeof(real), n && n->coupling},
+        {(void **)&s->laplace, bonds, sizeof(real), n && n->laplace},
     };
     memcpy(rows, all, sizeof all);
 }
@@ -181,7 +207,7 @@ static status allocate_rows(array_row *rows, int from, int to, report *r) {
     return STATUS_OK;
 }
 
-enum { BOND_ROWS = 11 };
+enum { BOND_ROWS = 13 };
 
 status sheet_layout(sheet *s, const sheet_network *n, report *r) {
     array_row rows[ARRAYS];
@@ -193,10 +219,6 @@ status sheet_layout(sheet *s, const sheet_network *n, report *r) {
     if (code != STATUS_OK) return code;
     list_arrays(s, n, rows);
     code = allocate_rows(rows, BOND_ROWS, ARRAYS, r);
-    if (code == STATUS_OK && n->dilation) {
-        s->dilation = memory_allocate_array((size_t)s->slot_count * PACK, sizeof(real));
-        if (!s->dilation) code = report_set(r, STATUS_SYSTEM, "out of memory for a sheet's bonds");
-    }
     if (code == STATUS_OK) sheet_fill_bonds(s, n);
     return code;
 }
@@ -205,5 +227,4 @@ void sheet_layout_free(sheet *s) {
     array_row rows[ARRAYS];
     list_arrays(s, NULL, rows);
     for (int i = 0; i < ARRAYS; i++) memory_free(*rows[i].array, rows[i].count * rows[i].size);
-    memory_free(s->dilation, (size_t)s->slot_count * PACK * sizeof(real));
 }

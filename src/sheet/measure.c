@@ -59,6 +59,8 @@ static void measure_bonds(const sheet *s, int32_t p, int lane, sheet_measures *m
         m->elastic += bond_energy(s, b, place, at, &bond);
         if (s->dilation) dilatation += (double)s->dilation[at] * sqrt(bond.left) * (bond.s - 1 - bond.swelling) * s->weight_sum[place];
     }
+    for (int e = 0; e < SHEET_EFFECTS; e++)
+        if ((s->mask >> e & 1) && sheet_effect_table[e]->sheet->energy) m->elastic += sheet_effect_table[e]->sheet->energy(s, p, lane);
     m->elastic += 0.5 * b->dilation_modulus * dilatation * dilatation * (double)s->area[place];
     double share = total ? (double)broken / total : 0;
     m->bonds_total += total;

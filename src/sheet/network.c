@@ -184,15 +184,15 @@ static status measure_bonds(const sheet_definition *d, const sheet_plan *plans, 
 
 static status allocate_bonds(const sheet_definition *d, const sheet_plan *plans, sheet_network *n, report *r) {
     size_t m = (size_t)n->bond_count;
-    bool breaks = false, diffuses = false, state = false;
+    bool breaks = false, diffuses = false, state = false, bends = false;
     for (int b = 0; b < d->body_count; b++) {
         const sheet_plan *p = &plans[d->bodies[b].material];
-        breaks |= p->fractures, diffuses |= p->diffuses, state |= p->state;
+        breaks |= p->fractures, diffuses |= p->diffuses, state |= p->state, bends |= p->bending > 0;
     }
     n->neighbour = memory_allocate_array(m, sizeof *n->neighbour);
     n->cut = memory_allocate_array(m, 1);
     double **const needed[] = {&n->length, &n->weight, &n->stiffness, breaks ? &n->limit : NULL, diffuses ? &n->conduct : NULL,
-                               state ? &n->coupling : NULL, state ? &n->dilation : NULL};
+                               state ? &n->coupling : NULL, state ? &n->dilation : NULL, bends ? &n->laplace : NULL};
     bool good = n->neighbour && n->cut;
     for (size_t i = 0; i < sizeof needed / sizeof *needed; i++) {
         if (!needed[i]) continue;
@@ -225,7 +225,7 @@ void network_free(sheet_network *n) {
     memory_free(n->sum, (size_t)n->count * sizeof *n->sum);
     memory_free(n->neighbour, m * sizeof *n->neighbour);
     memory_free(n->cut, m);
-    double *const arrays[] = {n->length, n->weight, n->stiffness, n->limit, n->conduct, n->coupling, n->dilation};
+    double *const arrays[] = {n->length, n->weight, n->stiffness, n->limit, n->conduct, n->coupling, n->dilation, n->laplace};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) memory_free(arrays[i], bytes);
     *n = (sheet_network){0};
 }

@@ -20,8 +20,10 @@ typedef struct sheet_network {
     double *conduct;        // [bond_count], κ W A_j / (|r⁰|² ρ C), per time; NULL: nothing diffuses
     double *coupling;       // [bond_count], weight of ϑ_i/w_i + ϑ_j/w_j beside the stretch; NULL: no state-based form
     double *dilation;       // [bond_count], 2 W A_j / w_i²
+    double *laplace;        // [bond_count], Σ laplace (x_j − x_i) is the Laplacian; NULL: nothing resists bending
     double *sum;            // [count], w_i = Σ W A_j
     double momentum_bound;  /* largest Σ c W A_j / (2 ρ h r²): Δt ≤ 1/√ of it */
+    double bending_bound;   /* largest (Σ laplace) √(B/ρh): Δt ≤ 1/it */
     double diffusion_bound; /* largest Σ κ W A_j / (ρ C r²): Δt ≤ 1/it */
     sheet_calibration calibration[SHEET_BODIES];
 } sheet_network;

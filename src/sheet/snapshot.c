@@ -25,6 +25,7 @@ static int list_saved(const sheet *s, saved_array rows[SAVED]) {
         {"sheet/history", s->history, real_type, s->slot_count, PACK},
         {"sheet/conduct", s->conduct, real_type, s->slot_count, PACK},
         {"sheet/dilation", s->dilation, real_type, s->slot_count, PACK},
+        {"sheet/laplace", s->laplace, real_type, s->slot_count, PACK},
     };
     int count = 0;
     for (int i = 0; i < SAVED; i++)
@@ -72,6 +73,7 @@ status sheet_restore(sheet *s, const record_list *list, report *r) {
     memcpy(s->grip_impulse, scalars + 1, sizeof s->grip_impulse);
     s->diffused_until = scalars[4];
     s->stiffening = scalars[5];
+    s->broken_since = 1; /* contacts are listed anew */
     for (int b = 0; b < SHEET_BOUNDARIES; b++) s->was_active[b] = active[b];
     return STATUS_OK;
 }

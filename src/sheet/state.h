@@ -45,6 +45,8 @@ typedef struct body_constants {
     bool total, toughness_softens;
     real stiffness_loss, toughness_loss, stretch_loss, floor;
     real decay, damping, drag, wind[3]; /* drag: per mass */
+    real bending;                       /* B/ρh */
+    double contact_reach, contact_stiffness; /* distance, force per approach */
     double surface_density;       /* ρ h */
     double heat;                  /* ρ C h */
     double dilation_modulus;      /* Λ */
@@ -54,6 +56,7 @@ typedef struct body_constants {
 typedef struct group_result {
     real stiffening; /* largest stiffness of a bond over c */
     int32_t fault;   /* index of the first bad particle + 1 */
+    int32_t broken;  /* bonds that broke, counted from both ends */
     double grip_work, grip_impulse[3];
 } group_result;
 
@@ -64,7 +67,9 @@ struct sheet {
     body_constants bodies[SHEET_BODIES];
     uint32_t mask;
     int threads;
-    double momentum_bound, diffusion_bound; /* of the state at rest */
+    double momentum_bound, diffusion_bound, bending_bound, contact_bound; /* of the state at rest */
+    struct contact_list *contacts; /* effects/self_contact.c; NULL unless it is on */
+    int64_t broken_since;  /* bonds broken since contacts were last listed */
     double stiffening;
 
     int64_t count;
@@ -88,6 +93,9 @@ struct sheet {
     real *coupling, *dilation; // [slot_count][PACK]; NULL unless state-based
     real *dilatation;     // [pack_count][PACK], ϑ/w; NULL unless state-based
     real *diffused_next;  // [pack_count][PACK]; NULL unless something diffuses
+    real *laplace;        // [slot_count][PACK], weights of the Laplacian; NULL unless something resists bending
+    real *curvature;      // [pack_count][PACK][4], the Laplacian of the places
+    real *whole;          // [pack_count][PACK], Σ laplace where curvature is known, −1 elsewhere
     double *weight_sum;   // [pack_count][PACK], w; NULL unless state-based
 
     double diffused_until; /* the time that θ has been brought to */
@@ -120,8 +128,10 @@ typedef struct sheet_stages {
     void (*constants)(const sheet_plan *plan, const sheet_calibration *c, real law[LAW_CONSTANTS]);
     void (*bonds)(const pack_work *w);
     double (*stored)(const real law[LAW_CONSTANTS], const bond_state *b);
-    /* Before the bonds: what needs a sweep of its own. */
-    void (*before)(sheet *s, real dt);
+    /* Before the bonds: what needs a sweep of its own. Errors: out of memory. */
+    status (*before)(sheet *s, real dt, report *r);
+    void (*release)(sheet *s); /* frees what `before` keeps */
+    double (*energy)(const sheet *s, int32_t pack, int lane); /* of a particle, beside its bonds */
     /* On a pack's velocities, before boundaries. */
     void (*velocity)(const pack_work *w);
     /* After positions have moved to `time`; `dt` is the step that led there. */
@@ -145,7 +155,7 @@ void sheet_layout_free(sheet *s);
 void sheet_take_hold(sheet *s);
 void sheet_advance(sheet *s, real dt);
 /* Breaks the bonds of `lanes` (a bit each) in a slot. */
-void sheet_break_bonds(sheet *s, int64_t first, unsigned lanes);
+void sheet_break_bonds(sheet *s, int64_t first, unsigned lanes, group_result *result);
 /* Calls a stage for all packs. */
 void sheet_for_packs(sheet *s, real dt, void (*stage)(const pack_work *w));
 /* effects/diffusion.c: brings θ to `time`. */

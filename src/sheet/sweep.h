@@ -56,7 +56,7 @@ SIMD_INLINE void add_slot(const pack_work *w, int64_t at, unsigned flags, own_pl
         if (flags & BOND_FEELS_THETA) limit = limit * limit_factor(b, theta, left);
         vec_mask torn = (q > limit) & (stiffness > 0);
         if (vec_any(torn)) {
-            sheet_break_bonds(s, at, lanes_of(torn));
+            sheet_break_bonds(s, at, lanes_of(torn), w->result);
             stiffness = vec_select(torn, vec_all(0), stiffness);
         }
     }

@@ -20,6 +20,8 @@ static patch *cracking_sheet(arena *memory, const char *law, sheet_lattice latti
     patch_set(p, "diffusion", "k", 0.05);
     patch_set(p, "swelling", "alpha", 0.03);
     patch_set(p, "softening", "stiffness", 0.5);
+    patch_set(p, "self_contact", "stiffness", 0.5);
+    if (lattice == SHEET_HEXAGONAL) patch_set(p, "bending", "stiffness", 1e-4);
     p->d.notches[0] = (sheet_notch){.body = -1, .from = {-1, 0.98, 0}, .to = {0.5, 0.98, 0}, .normal = {0, 0, 1}};
     p->d.notch_count = 1;
     for (int k = 0; k < SIDE; k++) hot[k] = (37 * k * k) % (SIDE * SIDE), rate[k] = 20;

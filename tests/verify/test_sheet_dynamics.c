@@ -149,10 +149,75 @@ static void boundaries_hold_and_stop(void) {
     arena_destroy(memory);
 }
 
+/* A sheet rolled onto a cylinder without stretching stores B/2 for an area and a squared curvature. The energies of two lengths are compared, so that
+ * free edges cancel. */
+static void a_rolled_sheet_stores_its_bending(void) {
+    double B = 0.3, curvature = 0.05, energy[2], dx = 0.1;
+    for (int k = 0; k < 2; k++) {
+        double stored[2];
+        for (int stiff = 0; stiff < 2; stiff++) {
+            patch *p = patch_create(SHEET_HEXAGONAL, dx, 1.5, 0.02);
+            patch_fill(p, 30 + 10 * k, 14);
+            patch_set(p, "linear", "E", 1);
+            if (stiff) patch_set(p, "bending", "stiffness", B);
+            for (int64_t i = 0; i < p->d.count; i++) {
+                double angle = p->rest[i][0] * curvature;
+                p->position[i][0] = sin(angle) / curvature, p->position[i][2] = (1 - cos(angle)) / curvature;
+            }
+            CHECK(patch_start(p, 64, "auto", 1));
+            stored[stiff] = patch_measure(p).elastic;
+            patch_free(p);
+        }
+        energy[k] = stored[1] - stored[0];
+    }
+    double area = 10 * dx * 12 * dx * sqrt(0.75), expected = 0.5 * B * curvature * curvature * area; /* rows at the edge do not count */
+    CHECK_ROW("issue 4, 6", "sheet on a cylinder: bending energy of 10 more columns", expected, energy[1] - energy[0], 1e-4 * expected);
+}
+
+/* One sheet flies at another: with contact they bounce, without it they pass. */
+static double closest_approach(bool contact) {
+    patch *p = patch_create(SHEET_SQUARE, 0.1, 1.5, 0.02);
+    patch_fill(p, 12, 12);
+    patch_set(p, "linear", "E", 20);
+    if (contact) patch_set(p, "self_contact", "stiffness", 1);
+    /* a second sheet above the first, turned by a third of a spacing, falling on it */
+    p->d.body_count = 2;
+    p->d.bodies[1] = p->d.bodies[0];
+    p->d.bodies[1].first = 144;
+    for (int i = 0; i < 144; i++) {
+        patch_add(p, p->rest[i][0] + 0.03, p->rest[i][1] + 0.04, 0.3, 0.01);
+        p->velocity[144 + i][2] = -0.3;
+    }
+    p->d.bodies[0].count = p->d.bodies[1].count = 144;
+    double closest = HUGE_VAL, (*x)[3] = malloc(288 * sizeof *x);
+    CHECK(patch_start(p, 64, "auto", 2));
+    sheet_measures start = patch_measure(p);
+    double dt = 0.2 * patch_limit(p);
+    for (int k = 0; k < 150; k++) {
+        CHECK(patch_steps(p, 5, dt) == STATUS_OK);
+        p->engine->read(p->state, "position", x[0]);
+        for (int i = 0; i < 144; i++)
+            for (int j = 144; j < 288; j++) closest = fmin(closest, sqrt(pow(x[i][0] - x[j][0], 2) + pow(x[i][1] - x[j][1], 2) + pow(x[i][2] - x[j][2], 2)));
+    }
+    sheet_measures end = patch_measure(p);
+    CHECK_NEAR(end.momentum[2], start.momentum[2], 1e-12);
+    if (contact) CHECK_ROW("issue 4, 5", "two sheets that collide: energy after over before", 1, (end.kinetic + end.elastic) / (start.kinetic + start.elastic), 0.01);
+    free(x);
+    patch_free(p);
+    return closest;
+}
+
+static void sheets_do_not_pass_through_each_other(void) {
+    CHECK(closest_approach(true) > 0.045);
+    CHECK(closest_approach(false) < 0.055);
+}
+
 int main(void) {
     RUN(a_taut_membrane_sounds_right);
     RUN(energy_and_angular_momentum_last);
     RUN(slow_motion_is_not_lost_in_f32);
     RUN(boundaries_hold_and_stop);
+    RUN(a_rolled_sheet_stores_its_bending);
+    RUN(sheets_do_not_pass_through_each_other);
     return check_finish();
 }

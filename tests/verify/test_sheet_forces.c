@@ -32,6 +32,7 @@ static patch *random_patch(const force_case *c) {
     patch_set(p, "swelling", "alpha", 0.02);
     patch_set(p, "softening", "stiffness", 0.3);
     patch_set(p, "grain", "stiffness", 1.8);
+    patch_set(p, "bending", "stiffness", 1e-3);
     for (int i = 0; i < COUNT; i++) {
         for (int k = 0; k < 3; k++) p->position[i][k] += 0.003 * patch_random((uint64_t)(3 * i + k));
         p->diffused[i] = 0.5 + 0.5 * patch_random((uint64_t)(1000 + i));

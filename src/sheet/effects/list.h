@@ -11,6 +11,8 @@
     X(swelling)                                                                                                        \
     X(softening)                                                                                                       \
     X(grain)                                                                                                           \
+    X(bending)                                                                                                         \
+    X(self_contact)                                                                                                    \
     X(drag)                                                                                                            \
     X(damping)
 

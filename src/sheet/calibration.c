@@ -215,7 +215,7 @@ static void calibrate_bond(const sheet_definition *d, const sheet_body *b, const
         double kappa = p->diffuses ? 0.5 * (own_diffusivity(p, n->sum[i], d->area[i]) + own_diffusivity(p, n->sum[j], d->area[j])) : 0;
         n->conduct[k] = p->diffuses ? kappa * share / (length * length * density * p->capacity) : 0;
     }
-    if (n->laplace) n->laplace[k] = p->bending > 0 ? 2 * (1 / n->sum[i] + 1 / n->sum[j]) * share / (length * length) : 0;
+    if (n->laplace) n->laplace[k] = p->bending > 0 ? 4 / n->calibration[n->body[i]].weight_sum * share / (length * length) : 0; /* no correction: edges do not count */
     if (n->coupling) {
         double mu = 1 / (2 * (1 + p->nu)), lambda = (3 * p->nu - 1) / (2 * (1 - p->nu * p->nu));
         /* √ of what the grain does in both, so that their product, an energy's gradient, has it once. */

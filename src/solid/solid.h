@@ -8,7 +8,7 @@
 #include "base/record.h"
 #include "effect/effect.h"
 #include "effect/kinds.h"
-#include "geom/shape.h"
+#include "geom/rigid.h"
 
 #include <stdint.h>
 
@@ -20,23 +20,7 @@ typedef struct solid_material {
     bool protects;                /* particles of this material are never damaged (they were gripped at the start) */
 } solid_material;
 
-/* A rigid shape at its place: maps between its rest frame (time 0) and the world. */
-typedef struct rigid_motion {
-    double translation[3];
-    double rotation[9]; /* about `pivot` */
-    double pivot[3];    /* at time 0 */
-    double velocity[3], spin[3];
-    bool active;
-} rigid_motion;
-
-/* A rigid shape that takes hold of the grid (a grip) or keeps material out (a collider). */
-typedef struct solid_boundary {
-    const shape *shape; /* in its rest frame */
-    bool grip;
-    contact_kind contact;
-    double friction;
-    rigid_motion motion; /* updated by the caller before each step */
-} solid_boundary;
+typedef rigid_boundary solid_boundary;
 
 typedef struct solid_definition {
     int threads;
@@ -117,11 +101,5 @@ typedef struct solid_engine {
 /* The engine for a precision (32, 64) and instruction set ("auto": the best that this processor has; "plain", "avx2",
  * "avx512"). NULL when this processor or build lacks it. */
 const solid_engine *solid_engine_find(int precision, const char *simd);
-
-/* World position → the boundary's rest frame, and the velocity of the boundary's material at a world position. */
-void rigid_motion_to_rest(const rigid_motion *m, const double x[3], double rest[3]);
-void rigid_motion_velocity(const rigid_motion *m, const double x[3], double velocity[3]);
-/* Moves it on by dt with its current velocity and spin. */
-void rigid_motion_advance(rigid_motion *m, double dt);
 
 #endif

@@ -64,8 +64,8 @@ static void a_yielded_bond_unloads_along_its_stiffness(void) {
         patch_free(p);
     }
     double f = eta0 * exp(-2 * beta);
-    CHECK_ROW("METHOD.md §6, 7", "yielded bond: force after unloading by 0.003, over the force before", (f - 0.003) / f, sqrt(stored[1] / stored[0]), 1e-6);
-    CHECK_ROW("METHOD.md §6, 7", "the same: force after loading again", 1, sqrt(stored[2] / stored[0]), 1e-6);
+    CHECK_ROW("METHOD 6", "yielded bond: force after unloading by 0.003, over the force before", (f - 0.003) / f, sqrt(stored[1] / stored[0]), 1e-6);
+    CHECK_ROW("METHOD 6", "the same: force after loading again", 1, sqrt(stored[2] / stored[0]), 1e-6);
     arena_destroy(memory);
 }
 
@@ -86,7 +86,7 @@ static void a_hot_free_sheet_does_not_break(void) {
         CHECK(patch_steps(p, 500, 0.5 * patch_limit(p)) == STATUS_OK);
         sheet_measures m = patch_measure(p);
         if (total) CHECK(m.bonds_broken == m.bonds_total); /* the paper's criterion tears it to pieces */
-        else CHECK_ROW("METHOD.md §6, 7", "free sheet grown by 10 %, critical stretch 2 %: bonds broken", 0, (double)m.bonds_broken, 0);
+        else CHECK_ROW("METHOD 6", "free sheet grown by 10 %, critical stretch 2 %: bonds broken", 0, (double)m.bonds_broken, 0);
         patch_free(p);
     }
 }
@@ -124,11 +124,11 @@ static void the_work_of_separation_is_the_toughness(void) {
     for (int k = 0; k < 3; k++) {
         char text[96];
         snprintf(text, sizeof text, "two halves drawn apart, %d spacings wide: work / (G area)", 40 << k);
-        CHECK_ROW("issue 4, 1", text, 1, work_of_separation(SHEET_SQUARE, 1.5, 40 << k), 0.05);
+        CHECK_ROW("METHOD 6", text, 1, work_of_separation(SHEET_SQUARE, 1.5, 40 << k), 0.05);
         snprintf(text, sizeof text, "the same, R = 3.015: work / (G area), %d", 40 << k);
-        CHECK_ROW("issue 4, 1", text, 1, work_of_separation(SHEET_SQUARE, 3.015, 40 << k), 0.05);
+        CHECK_ROW("METHOD 6", text, 1, work_of_separation(SHEET_SQUARE, 3.015, 40 << k), 0.05);
         snprintf(text, sizeof text, "the same, hexagonal: work / (G area), %d", 40 << k);
-        CHECK_ROW("issue 4, 1", text, 1, work_of_separation(SHEET_HEXAGONAL, 1.5, 40 << k), 0.05);
+        CHECK_ROW("METHOD 6", text, 1, work_of_separation(SHEET_HEXAGONAL, 1.5, 40 << k), 0.05);
     }
 }
 
@@ -199,7 +199,7 @@ static void a_crack_runs_at_the_toughness_asked_for(void) {
             double found = strip_toughness(cases[k].lattice, cases[k].radius, rows, !measuring);
             if (measuring) printf("  %s, %d rows: G / G asked = %.3f\n", cases[k].name, rows, found);
             snprintf(text, sizeof text, "clamped strip, %s, %d rows: G at which the crack runs / G", cases[k].name, rows);
-            CHECK_ROW("METHOD.md §6, 6", text, 1, found, 0.05);
+            CHECK_ROW("METHOD 6", text, 1, found, 0.05);
         }
 }
 

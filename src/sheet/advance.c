@@ -106,7 +106,7 @@ static double pack_reach(const pack_work *w, double center[3]) {
 
 static void collide(const pack_work *w) {
     const sheet *s = w->state;
-    double center[3], rest[3], x[3], u[3], v[3], reach = -1;
+    double center[3], rest[3], x[3], u[3], v[3], normal[3], reach = -1;
     double h = 1e-3 * s->definition.bodies[s->packs[w->pack].body].spacing;
     for (int k = 0; k < s->definition.boundary_count; k++) {
         const rigid_boundary *b = &s->definition.boundaries[k];
@@ -120,7 +120,7 @@ static void collide(const pack_work *w) {
             if (s->holder[(int64_t)w->pack * PACK + lane] || shape_distance(b->shape, rest) >= 0) continue;
             for (int c = 0; c < 3; c++) v[c] = (double)s->velocity[((int64_t)w->pack * 3 + c) * PACK + lane];
             rigid_motion_velocity(&b->motion, x, u);
-            rigid_boundary_velocity(b, rest, h, u, v);
+            (void)rigid_boundary_velocity(b, rest, h, u, v, normal);
             set_velocity(w, lane, u, v);
         }
     }

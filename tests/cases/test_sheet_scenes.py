@@ -232,6 +232,83 @@ def test_seeds():
         check(theta[0] != theta[2], "another seed sprays others")
 
 
+def command(box, *arguments):
+    environment = dict(os.environ, SUNDER_DB=os.path.join(box.folder, "ledger.db"), XDG_DATA_HOME=os.path.join(box.folder, "data"))
+    done = subprocess.run([SUNDER, *arguments], env=environment, cwd=box.folder, capture_output=True, text=True)
+    return done.returncode, done.stdout, done.stderr
+
+
+def test_resume_and_files():
+    """A resumed run goes on with the same bits; a frame holds what the file format promises; explain and the summary say what runs."""
+    scene = os.path.join(SOURCE, "scenes/sheet/rubber.lua")
+    settings = ["--set", "variant=wet", "--set", "pull=0.5", "--json", "--quiet"]
+    with Box() as box:
+        code, out, err = command(box, "run", scene, "--frames", "24", "--threads", "2", *settings)
+        whole = json.loads(out)
+        check(code == 0 and whole["bonds"]["broken"] > 30, f"the whole run breaks: {err}")
+        code, out, err = command(box, "run", scene, "--frames", "13", "--threads", "1", *settings)
+        part = json.loads(out)
+        code, out, err = command(box, "run", "--resume", part["run_id"], "--frames", "11", "--json", "--quiet")
+        check(code == 0, f"resume: {err}")
+        again = json.loads(out)
+        check(again["state_hash"] == whole["state_hash"] and again["bonds"] == whole["bonds"] and again["steps"] == whole["steps"], "resumed: same bits")
+        n, m = whole["particles"], whole["bonds"]["total"]
+        first, last = whole["out"], whole["frames"]
+        sizes = {name: len(library.read(first, last, name)) for name in ("position", "velocity", "id", "diffused", "broken", "bond_broken")}
+        check(sizes == {"position": 3 * n, "velocity": 3 * n, "id": n, "diffused": n, "broken": n, "bond_broken": m}, f"frame: {sizes}")
+        check(len(library.read(first, 0, "bonds")) == 2 * m, "bonds in frame 0")
+        check(sum(library.read(first, last, "bond_broken")) == whole["bonds"]["broken"], "bond_broken agrees with the summary")
+        listed = subprocess.run(["h5ls", f"{first}/frames/{last:06d}.hdf/sheet"], capture_output=True, text=True) if shutil.which("h5ls") else None
+        check(listed is None or ("bond_broken" in listed.stdout and "bonds" not in listed.stdout), "bonds stand in frame 0 alone")
+        code, out, err = command(box, "explain", scene, "--set", "variant=wet", "--json")
+        plan = json.loads(out)
+        check(code == 0 and {"rubber", "fracture", "diffusion", "swelling", "softening", "boundary"} == set(plan["effects_on"]), f"explain: {plan['effects_on']}")
+        check("rubber.bonds" in plan["stages"] and "diffusion.after" in plan["stages"] and "boundary.advance" in plan["stages"], f"stages: {plan['stages']}")
+        check(plan["step_limits"]["diffusion"] > plan["step_limits"]["rubber"] > 0, f"limits: {plan['step_limits']}")
+
+
+def test_wrong_scenes():
+    """What is wrong names file, line, key and the nearest right word."""
+    cases = {
+        "lattice = 'hexagnal'": "did you mean 'hexagonal'", "latice = 'square'": "did you mean 'lattice'", "notches = { { from = {0,0,0} } }": "from and to, or a shape",
+        "sources = { { rate = 1 } }": "a material with diffusion", "radius = 9": "from 1.2 to 6", "thickness = -1": "above 0",
+    }
+    with Box() as box:
+        for line, expected in cases.items():
+            path = os.path.join(box.folder, "scene.lua")
+            with open(path, "w") as file:
+                file.write('local s = require "sunder"\nreturn s.scene { dx = 0.1, duration = 1, sheets = { { shape = s.disk { radius = 1 },\n'
+                           + ("" if "thickness" in line else "thickness = 0.1, ") + 'material = { density = 1, linear = { E = 1 } },\n' + line + " } } }\n")
+            code, out, err = command(box, "check", path)
+            check(code == 2 and expected in err and "scene.lua:" in err, f"{line}: {code} {err}")
+        for material, expected in (("linear = { E = 1 }, elastic = { E = 1 }", "an effect of sheets"), ("elastic = { E = 1 }", "an effect of sheets"),
+                                   ("linear = { E = 1 }, swelling = 0.1", "diffusion"), ("fracture = 1", "linear")):
+            with open(path, "w") as file:
+                file.write('local s = require "sunder"\nreturn s.scene { dx = 0.1, duration = 1, sheets = { { shape = s.disk { radius = 1 }, thickness = 0.1,\n'
+                           "material = { density = 1, " + material + " } } } }\n")
+            code, out, err = command(box, "check", path)
+            check(code == 2 and expected in err, f"{material}: {code} {err}")
+
+
+def test_shapes_of_sheets():
+    """Rectangles, disks, polygons with a bay, holes and surfaces hold as many particles as their areas say."""
+    shapes = {
+        "s.rectangle { size = { 2, 1 } }": 2.0, "s.disk { radius = 0.5 }": math.pi / 4, "s.polygon { {0,0}, {2,0}, {2,2}, {1,1}, {0,2} }": 3.0,
+        "s.rectangle { size = { 2, 1 } } - s.disk { radius = 0.3 }": 2 - math.pi * 0.09,
+    }
+    with Box() as box:
+        path = os.path.join(box.folder, "scene.lua")
+        for lattice, per in (("square", 1.0), ("hexagonal", math.sqrt(0.75)), ("scattered", 1.0)):
+            for shape, area in list(shapes.items()) + ([("s.sphere { radius = 0.5 }, surface = true", math.pi)] if lattice == "scattered" else []):
+                with open(path, "w") as file:
+                    file.write('local s = require "sunder"\nreturn s.scene { duration = 1, sheets = { { shape = ' + shape + f", spacing = 0.04, lattice = '{lattice}',\n"
+                               "radius = 2.1, thickness = 0.1, material = { density = 1, linear = { E = 1 } } } } }\n")
+                code, out, err = command(box, "run", path, "--frames", "0", "--json", "--quiet")
+                count = json.loads(out)["particles"] if code == 0 else -1
+                expected = area / (0.04 ** 2 * per)
+                check(abs(count / expected - 1) < (0.15 if lattice == "scattered" else 0.05), f"{lattice} {shape}: {count} for {expected:.0f}: {err}")
+
+
 def main():
     wanted = sys.argv[3:]
     for name, test in list(globals().items()):

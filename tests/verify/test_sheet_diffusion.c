@@ -48,10 +48,10 @@ static void a_slab_follows_its_fourier_series(void) {
         char text[96];
         error[k] = slab_error(20 << k);
         snprintf(text, sizeof text, "slab between 1 and 0, t = 0.1, N = %d: largest error", 20 << k);
-        CHECK_ROW("METHOD.md §6", text, 0, error[k], 1.25 * given[k]);
+        CHECK_ROW("METHOD 6", text, 0, error[k], 1.25 * given[k]);
     }
-    CHECK_ROW("METHOD.md §6", "the same: order from N = 20 to 40", 2, log2(error[0] / error[1]), 0.1);
-    CHECK_ROW("METHOD.md §6", "the same: order from N = 40 to 80", 2, log2(error[1] / error[2]), 0.1);
+    CHECK_ROW("METHOD 6", "the same: order from N = 20 to 40", 2, log2(error[0] / error[1]), 0.1);
+    CHECK_ROW("METHOD 6", "the same: order from N = 40 to 80", 2, log2(error[1] / error[2]), 0.1);
 }
 
 /* A random sheet cut in two: one half hot. */
@@ -74,10 +74,10 @@ static void a_crack_lets_nothing_through(void) {
         if (p->rest[i][0] > 1.05) passed += fabs(theta[i]);
         else least = fmin(least, theta[i]), most = fmax(most, theta[i]);
     }
-    CHECK_ROW("METHOD.md §6, 8", "two halves of a cut sheet: what has passed", 0, passed, 0);
+    CHECK_ROW("METHOD 6", "two halves of a cut sheet: what has passed", 0, passed, 0);
     CHECK(most - least < 0.5); /* and the hot half has evened out */
     double after = patch_measure(p).diffused_total;
-    CHECK_ROW("METHOD.md §6, 8", "the same: relative change of the sum of rho C A theta", 0, after / before - 1, 1e-13);
+    CHECK_ROW("METHOD 6", "the same: relative change of the sum of rho C A theta", 0, after / before - 1, 1e-13);
     patch_free(p);
 }
 
@@ -95,7 +95,7 @@ static void sources_and_decay_add_up(void) {
     CHECK(patch_steps(p, 77, 0.001) == STATUS_OK);
     p->engine->settle(p->state, p->time);
     double expected = 0.5 * p->area[40] * 5 * (0.0473 - 0.0101);
-    CHECK_ROW("issue 4, 4", "a source on for a while: sum of rho C A h theta", expected, patch_measure(p).diffused_total, 1e-14);
+    CHECK_ROW("METHOD 6", "a source on for a while: sum of rho C A h theta", expected, patch_measure(p).diffused_total, 1e-14);
     patch_free(p);
     p = patch_create(SHEET_SQUARE, 0.1, 1.5, 0.5);
     patch_fill(p, 9, 9);
@@ -107,7 +107,7 @@ static void sources_and_decay_add_up(void) {
     CHECK(patch_start(p, 64, "auto", 1));
     CHECK(patch_steps(p, 500, 0.001) == STATUS_OK);
     p->engine->settle(p->state, p->time);
-    CHECK_ROW("issue 4, 4", "decay at rate 3 for 0.5: largest theta", 2 * exp(-1.5), patch_measure(p).diffused_max, 1e-12);
+    CHECK_ROW("METHOD 6", "decay at rate 3 for 0.5: largest theta", 2 * exp(-1.5), patch_measure(p).diffused_max, 1e-12);
     patch_free(p);
 }
 

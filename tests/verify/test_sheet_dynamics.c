@@ -67,7 +67,7 @@ static void a_taut_membrane_sounds_right(void) {
         double expected = 0.5 * sqrt(T / (1.0 * 0.01)) * sqrt(pow(modes[k][0] / 1.5, 2) + pow(modes[k][1] / 1.0, 2));
         char text[96];
         snprintf(text, sizeof text, "taut membrane 1.5 × 1, mode (%d, %d): frequency", modes[k][0], modes[k][1]);
-        CHECK_ROW("METHOD.md §6", text, expected, found, 0.01 * expected);
+        CHECK_ROW("METHOD 6", text, expected, found, 0.01 * expected);
     }
 }
 
@@ -92,8 +92,8 @@ static void energy_and_angular_momentum_last(void) {
         }
     }
     sheet_measures last = patch_measure(p);
-    CHECK_ROW("issue 4, 1", "free sheet, 100 000 steps undamped: drift of the mean energy", 0, mean[1] / mean[0] - 1, 1e-3);
-    CHECK_ROW("METHOD.md §6", "the same: relative change of the angular momentum", 0, last.angular_momentum[2] / start.angular_momentum[2] - 1, 1e-10);
+    CHECK_ROW("METHOD 6", "free sheet, 100 000 steps undamped: drift of the mean energy", 0, mean[1] / mean[0] - 1, 1e-3);
+    CHECK_ROW("METHOD 6", "the same: relative change of the angular momentum", 0, last.angular_momentum[2] / start.angular_momentum[2] - 1, 1e-10);
     CHECK_NEAR(last.momentum[0], start.momentum[0], 1e-12);
     patch_free(p);
 }
@@ -108,7 +108,7 @@ static void slow_motion_is_not_lost_in_f32(void) {
     CHECK(patch_steps(p, 10000, 1e-3) == STATUS_OK); /* 1e-6 a step; the last digit at 1000 is 6e-5 */
     double *x = malloc((size_t)p->d.count * 3 * sizeof *x);
     p->engine->read(p->state, "position", x);
-    CHECK_ROW("METHOD.md §6", "f32 at x = 1000, 10⁴ steps of 1e-6: way", 0.01, x[0] - p->rest[0][0], 1e-5);
+    CHECK_ROW("METHOD 6", "f32 at x = 1000, 10⁴ steps of 1e-6: way", 0.01, x[0] - p->rest[0][0], 1e-5);
     free(x);
     patch_free(p);
 }
@@ -130,7 +130,7 @@ static void boundaries_hold_and_stop(void) {
     p->engine->read(p->state, "position", x);
     CHECK_NEAR(x[3 * 19], 1.9 + 0.1 * dt * (double)steps, 1e-9);
     CHECK_NEAR(x[3 * 19 + 2], 0.05 * dt * (double)steps, 1e-9);
-    CHECK_ROW("METHOD.md §6", "pulled sheet: (kinetic + elastic) / work of grips", 1, (m.kinetic + m.elastic) / m.grip_work, 0.01);
+    CHECK_ROW("METHOD 6", "pulled sheet: (kinetic + elastic) / work of grips", 1, (m.kinetic + m.elastic) / m.grip_work, 0.01);
     patch_free(p);
     p = patch_create(SHEET_SQUARE, 0.1, 1.5, 0.02);
     patch_fill(p, 10, 10);
@@ -171,7 +171,7 @@ static void a_rolled_sheet_stores_its_bending(void) {
         energy[k] = stored[1] - stored[0];
     }
     double area = 10 * dx * 12 * dx * sqrt(0.75), expected = 0.5 * B * curvature * curvature * area; /* rows at the edge do not count */
-    CHECK_ROW("issue 4, 6", "sheet on a cylinder: bending energy of 10 more columns", expected, energy[1] - energy[0], 1e-4 * expected);
+    CHECK_ROW("METHOD 6", "sheet on a cylinder: bending energy of 10 more columns", expected, energy[1] - energy[0], 1e-4 * expected);
 }
 
 /* One sheet flies at another: with contact they bounce, without it they pass. */
@@ -201,7 +201,7 @@ static double closest_approach(bool contact) {
     }
     sheet_measures end = patch_measure(p);
     CHECK_NEAR(end.momentum[2], start.momentum[2], 1e-12);
-    if (contact) CHECK_ROW("issue 4, 5", "two sheets that collide: energy after over before", 1, (end.kinetic + end.elastic) / (start.kinetic + start.elastic), 0.01);
+    if (contact) CHECK_ROW("METHOD 6", "two sheets that collide: energy after over before", 1, (end.kinetic + end.elastic) / (start.kinetic + start.elastic), 0.01);
     free(x);
     patch_free(p);
     return closest;

@@ -80,7 +80,7 @@ static void rotated_places_give_rotated_forces(void) {
         }
         char text[160];
         snprintf(text, sizeof text, "%s: a rotated sheet's forces less the rotated forces, over the largest", cases[c].name);
-        CHECK_ROW("METHOD.md §6, 1", text, 0, worst / scale, 1e-12);
+        CHECK_ROW("METHOD 6", text, 0, worst / scale, 1e-12);
         patch_free(p);
     }
 }
@@ -94,7 +94,7 @@ static void a_rigid_rotation_gives_no_force(void) {
     patch_set(p, "linear", "E", 1);
     for (int i = 0; i < COUNT; i++) rotate(R, p->rest[i], p->position[i]);
     CHECK(patch_forces(p, force[0]));
-    CHECK_ROW("issue 4, 1", "rigid rotation: largest force over E h dx", 0, largest(force) / (0.02 * 0.1), 1e-13);
+    CHECK_ROW("METHOD 6", "rigid rotation: largest force over E h dx", 0, largest(force) / (0.02 * 0.1), 1e-13);
     patch_free(p);
 }
 
@@ -146,7 +146,7 @@ static void forces_are_the_gradient_of_the_energy(void) {
             }
         char text[160];
         snprintf(text, sizeof text, "%s: force against differences of the stored energy, over the largest force", cases[c].name);
-        CHECK_ROW("METHOD.md §6", text, 0, worst / largest(force), 2e-7);
+        CHECK_ROW("METHOD 6", text, 0, worst / largest(force), 2e-7);
         patch_free(p);
     }
 }

@@ -31,9 +31,11 @@ enum { ITERATION_LIMIT = 2000, SET_ROUNDS = 4 };
  * (A rope under 1000 times Fig. 21's load: 1e-6 diverges, 1e-4 keeps its length to 5e-4, 1e-3 to 7e-3.) */
 #define REGULARISATION ((real)1e-4)
 
-/* Share of a fibre's stretch that is taken back each step, so that what tolerance and time steps let through does not add up; beyond
- * the most that is corrected at once a fibre is pulled back gently. It is the cells' mean that is taken back: what single
- * particles stretch beside it is in nobody's power, and asking for it drives tension without bound. */
+/* A fibre's stretch is taken back within half the time that the matrix needs to carry a wave over a cell, so that what tolerance and time
+ * steps let through does not add up; at most this share in one step, and beyond the most that is corrected at once it is pulled back gently. (A
+ * share of each step alone runs away: tension shortens the step, which raises the tension that a share asks for.) It is the cells'
+ * mean that is taken back: what single particles stretch beside it is in nobody's power, and asking for it drives tension
+ * without bound. */
 #define CORRECTION ((real)0.25)
 #define CORRECTED_MOST ((real)0.05)
 
@@ -130,7 +132,7 @@ static void exchange_vectors(const solid *s, const solid_block *b, real *window,
     exchange_window(b, window, s->constraint.nodes, NODE, BLOCK_NODES * NODE, wide, to_grid);
 }
 
-/* The particles' tensions, weights, relaxations and strains to the cells: the start of a solve. */
+/* The particles' tensions, weights, relaxations and strain rates asked for to the cells: the start of a solve. */
 SIMD_INLINE void start_block(pass_context *c, int32_t index, int worker, kernel_kind kernel) {
     solid *s = c->state;
     const solid_block *b = &s->blocks[index];
@@ -141,12 +143,13 @@ SIMD_INLINE void start_block(pass_context *c, int32_t index, int worker, kernel_
         fibre_lanes l = lanes_load(s, kernel, pack, part);
         vec tension = vec_load(field_at(&s->fields[s->tension_field], pack, 0, part));
         vec strain = vec_max(vec_min(l.stretch - 1, vec_all(CORRECTED_MOST)), vec_all(-CORRECTED_MOST));
-        real relaxation = s->constraint.relaxation[t->material] / c->dt;
+        real relaxation = s->constraint.relaxation[t->material] / c->dt, most = CORRECTION / c->dt;
+        real rate = s->constraint.recovery[t->material] < most ? s->constraint.recovery[t->material] : most;
         for (int lane = 0; lane < LANES_OF(t, first); lane++) {
             cells_scatter(&l, lane, l.volume[lane] * tension[lane], window + TENSION * WINDOW_NODES);
             cells_scatter(&l, lane, l.volume[lane], window + WEIGHT * WINDOW_NODES);
             cells_scatter(&l, lane, l.volume[lane] * relaxation, window + RELAXATION * WINDOW_NODES);
-            cells_scatter(&l, lane, l.volume[lane] * strain[lane], window + STRAIN * WINDOW_NODES);
+            cells_scatter(&l, lane, l.volume[lane] * strain[lane] * rate, window + STRAIN * WINDOW_NODES);
         }
     })
     for (int which = 0; which < STARTED; which++) exchange_plane(s, b, window + which * WINDOW_NODES, which, true);
@@ -236,7 +239,7 @@ SIMD_INLINE void collect_block(pass_context *c, int32_t index, int worker, kerne
         vec value = l.volume * scale * stretching(&l, own->tile.records, first);
         if (into == RESIDUAL)
             for (int lane = 0; lane < LANES_OF(t, first); lane++)
-                value[lane] += l.volume[lane] * cells_gather(&l, lane, cells + WINDOW_NODES) * (CORRECTION / c->dt);
+                value[lane] += l.volume[lane] * cells_gather(&l, lane, cells + WINDOW_NODES);
         for (int lane = 0; lane < LANES_OF(t, first); lane++) cells_scatter(&l, lane, value[lane], cells);
     })
     exchange_plane(s, b, cells, into, true);

@@ -103,6 +103,7 @@ typedef struct constraint_sums {
 typedef struct fibre_constraint {
     bool on, material[SOLID_MATERIALS];
     real relaxation[SOLID_MATERIALS];
+    real recovery[SOLID_MATERIALS]; /* rate at which stretch is taken back, 1/time */
     double tolerance;
     int solver; /* inextensible_solver: the most that the materials ask for */
     int64_t solves, iterations, factorisations;

@@ -1,7 +1,10 @@
 /* Inextensible fibres: the first fibre family keeps its length, whatever the load (AnisoMPM §6; METHOD.md §4). The solve is the
  * engine's (inextensible.c); here is what a material says of it. */
 #include "solid/inextensible.h"
+#include "solid/moduli.h"
 #include "solid/tensor.h"
+
+#include <math.h>
 
 enum { KEY_RELAXATION, KEY_TOLERANCE, KEY_SOLVER, KEY_COUNT };
 
@@ -10,6 +13,9 @@ static void declare(solid *s, int material, const effect_values *all) {
     s->constraint.on = true;
     s->constraint.material[material] = true;
     s->constraint.relaxation[material] = (real)own->value[KEY_RELAXATION][0];
+    double mu = 0, lambda = 0, lame_lambda;
+    solid_elastic_moduli(all, &mu, &lambda, &lame_lambda);
+    s->constraint.recovery[material] = (real)(2 * sqrt((lambda + 2 * mu) / s->definition.materials[material].density) / s->definition.dx);
     s->constraint.solver = (int)own->value[KEY_SOLVER][0];
     if (own->value[KEY_TOLERANCE][0] < s->constraint.tolerance) s->constraint.tolerance = own->value[KEY_TOLERANCE][0];
 }

@@ -1,4 +1,4 @@
 # Verification of the solid engine in whole bodies: dynamics with closed forms.
-foreach(name manufactured vibration)
+foreach(name manufactured vibration damage_lag)
   sunder_test(${name} ${CMAKE_SOURCE_DIR}/tests/verify/test_${name}.c sunder_sim)
 endforeach()

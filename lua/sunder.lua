@@ -59,6 +59,8 @@ end
 ---@field fibres? Fibres
 ---@field velocity? OfPlace  at the start; at rest if absent
 ---@field sampling? "lattice"|"jittered"|"poisson"  "jittered" if absent
+---@field discretisation? "particles"|"tetrahedra"  "particles" if absent
+---@field start? Vector|fun(x: number, y: number, z: number): number, number, number  where a vertex is at time 0; tetrahedra only
 
 --- A grip takes hold of whatever is inside a moving region.
 ---@class Grip
@@ -107,6 +109,7 @@ end
 ---@field laplacian? "quadratic"|"cubic"
 ---@field domain? { min: Vector, max: Vector }
 ---@field gravity? Vector
+---@field damping? number
 ---@field solids Solid[]
 ---@field grips? Grip[]
 ---@field colliders? Collider[]

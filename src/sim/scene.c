@@ -141,6 +141,29 @@ static status check_fibres(const scene *s, const scene_body *b, report *r) {
     return report_input(r, s->file, 0, "fibres", "fibre directions", found, NULL);
 }
 
+bool scene_is_tetrahedra(const scene *s) {
+    return s->body_count > 0 && s->bodies[0].discretisation == DISCRETISATION_TETRAHEDRA;
+}
+
+/* Bodies of tetrahedra live without a grid: they meet no others, and have no effect that needs one. */
+static status check_discretisation(const scene *s, const scene_body *b, report *r) {
+    const scene_material *m = &s->materials[b->material];
+    bool tetrahedra = b->discretisation == DISCRETISATION_TETRAHEDRA;
+    int count;
+    const effect *const *effects = effect_catalogue(&count);
+    if (tetrahedra != scene_is_tetrahedra(s))
+        return report_input(r, s->file, 0, "discretisation", "the same for all bodies of a scene (tetrahedra live without a grid)", "particles and tetrahedra", NULL);
+    if (!tetrahedra && b->start.outputs)
+        return report_input(r, s->file, 0, "start", "discretisation = \"tetrahedra\" beside it (particles start at rest)", "particles", NULL);
+    for (int e = 0; e < count && tetrahedra; e++) {
+        if (!m->effects[e].on || solid_tetra_find(64, "plain")->knows(effects[e])) continue;
+        char found[128];
+        snprintf(found, sizeof found, "'%s' in the body '%.60s'", effects[e]->name, b->name);
+        return report_input(r, m->file, m->line, effects[e]->name, "an effect that tetrahedra know: elastic, corotated, fibres", found, NULL);
+    }
+    return STATUS_OK;
+}
+
 static status check_body(const scene *s, const scene_body *b, report *r) {
     double low[3], high[3];
     if (!b->shape) return report_input(r, s->file, 0, "shape", "a shape", "nothing", NULL);
@@ -150,7 +173,8 @@ static status check_body(const scene *s, const scene_body *b, report *r) {
             return report_input(r, s->file, 0, "shape", "a bounded shape for a body", "one without bounds", NULL);
     if (b->material < 0 || b->material >= s->material_count)
         return report_input(r, s->file, 0, "material", "a material", "nothing", NULL);
-    return check_fibres(s, b, r);
+    status code = check_discretisation(s, b, r);
+    return code == STATUS_OK ? check_fibres(s, b, r) : code;
 }
 
 static status check_numbers(const scene *s, report *r) {

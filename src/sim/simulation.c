@@ -50,9 +50,11 @@ static void define(simulation *s, int threads, solid_definition *d) {
                             .transfer_ratio = from_scene->transfer_ratio, .kernel = from_scene->kernel, .laplacian = from_scene->laplacian,
                             .count = s->particles.count, .position = s->particles.position, .velocity = s->particles.velocity,
                             .volume = s->particles.volume, .fibre1 = s->particles.fibre1, .fibre2 = s->particles.fibre2,
-                            .material = s->particles.material};
-    int gravity = effect_index("gravity");
+                            .material = s->particles.material, .element_count = s->particles.element_count, .corner = s->particles.corner,
+                            .start = s->particles.start};
+    int gravity = effect_index("gravity"), damping = effect_index("damping");
     if (from_scene->effects[gravity].on) memcpy(d->gravity, from_scene->effects[gravity].value[0], sizeof d->gravity);
+    if (from_scene->effects[damping].on) d->damping = from_scene->effects[damping].value[0][0];
     define_materials(s, d);
     define_boundaries(s->scene, d);
 }
@@ -72,11 +74,12 @@ static double smallest_limit(const simulation *s, double limits[EFFECT_LIMIT], i
 static void make_plan(simulation *s, const solid_definition *d) {
     simulation_plan *p = &s->plan;
     *p = (simulation_plan){.effect_count = s->engine->effect_count, .effects = s->engine->effects, .mask = d->effect_mask,
-                           .dx = d->dx, .spacing = s->particles.spacing, .particles = d->count, .threads = d->threads,
+                           .dx = d->dx, .spacing = s->particles.spacing, .particles = d->count, .tetrahedra = d->element_count, .threads = d->threads,
                            .precision = s->engine->precision, .simd = s->engine->simd};
     static const char *const built_in[] = {"position", "velocity", "affine_velocity", "deformation_gradient", "volume"};
     int size = s->engine->precision / 8;
     for (size_t i = 0; i < sizeof built_in / sizeof *built_in; i++) {
+        if (s->engine->components(s->solid, built_in[i]) == 0) continue;
         plan_field *f = &p->fields[p->field_count++];
         snprintf(f->name, sizeof f->name, "%s", built_in[i]);
         snprintf(f->effect, sizeof f->effect, "transfer");
@@ -102,19 +105,20 @@ static void make_plan(simulation *s, const solid_definition *d) {
 
 /* The engine has copied what it needs; rest positions and bodies stay for the measures. */
 static void drop_loading_arrays(body_particles *p) {
-    size_t n = (size_t)p->count, row_bytes = 3 * sizeof(double) * n;
+    size_t n = (size_t)p->count, owners = p->element_count ? (size_t)p->element_count : n, row_bytes = 3 * sizeof(double) * n;
     memory_free(p->velocity, row_bytes);
+    memory_free(p->start, row_bytes);
     memory_free(p->volume, n * sizeof(double));
-    memory_free(p->material, n);
-    memory_free(p->fibre1, row_bytes);
-    memory_free(p->fibre2, row_bytes);
-    p->velocity = p->volume = p->fibre1 = p->fibre2 = NULL;
+    memory_free(p->material, owners);
+    memory_free(p->fibre1, 3 * sizeof(double) * owners);
+    memory_free(p->fibre2, 3 * sizeof(double) * owners);
+    p->velocity = p->start = p->volume = p->fibre1 = p->fibre2 = NULL;
     p->material = NULL;
 }
 
 status simulation_create(const scene *definition, const simulation_options *options, simulation **out, report *r) {
     *out = NULL;
-    const solid_engine *engine = solid_engine_find(options->precision, options->simd);
+    const solid_engine *engine = (scene_is_tetrahedra(definition) ? solid_tetra_find : solid_engine_find)(options->precision, options->simd);
     if (!engine)
         return report_input(r, NULL, 0, "simd", "an instruction set of this processor: auto, plain, avx2 or avx512", options->simd, NULL);
     simulation *s = memory_allocate(sizeof *s);
@@ -155,7 +159,7 @@ const simulation_plan *simulation_get_plan(const simulation *s) {
 }
 
 int simulation_stages(const simulation_plan *plan, char (*text)[48], int limit) {
-    const solid_engine *engine = solid_engine_find(plan->precision, plan->simd);
+    const solid_engine *engine = (plan->tetrahedra ? solid_tetra_find : solid_engine_find)(plan->precision, plan->simd);
     return engine->stages(plan->mask, text, limit);
 }
 

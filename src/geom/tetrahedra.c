@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { CORNERS = 8, PARTS = 5 };
+enum { CORNERS = 8, PARTS = 5, RETREATS = 3 };
 
 /* More cubes than this in a shape's box is a slip in the spacing. */
 static const double CUBE_LIMIT = 0x1p28;
@@ -113,14 +113,14 @@ static void mark_surface(const lattice *l, uint8_t *cubes_at) {
                 for (int corner = 0; corner < CORNERS && l->inside[i]; corner++) cubes_at[l->vertex[node_index(l, cube, corner)]]++;
 }
 
-/* Moves the surface's vertices onto the shape's surface, and back those of tetrahedra that this spoils, until none is. */
+/* Moves the surface's vertices onto the shape's surface, and those of tetrahedra that this spoils half way back, twice, then home, until none is. */
 static void fit(const lattice *l, tetrahedra *t, double *home, uint8_t *moved) {
     double h = fmin(l->edge[0], fmin(l->edge[1], l->edge[2])), whole = l->edge[0] * l->edge[1] * l->edge[2];
     mark_surface(l, moved);
     memcpy(home, t->vertex, (size_t)t->vertex_count * 3 * sizeof *home);
     for (int64_t v = 0; v < t->vertex_count; v++) {
         double *x = t->vertex + 3 * v, normal[3], distance = shape_distance(l->body, x);
-        moved[v] = moved[v] < CORNERS && fabs(distance) > 1e-9 * h && fabs(distance) < h;
+        moved[v] = moved[v] < CORNERS && fabs(distance) > 1e-9 * h && fabs(distance) < h ? RETREATS : 0;
         if (!moved[v]) continue;
         shape_normal(l->body, x, 1e-4 * h, normal);
         for (int c = 0; c < 3; c++) x[c] -= distance * normal[c];
@@ -133,8 +133,8 @@ static void fit(const lattice *l, tetrahedra *t, double *home, uint8_t *moved) {
             for (int k = 0; k < 4; k++) {
                 int64_t v = t->corner[4 * i + k];
                 if (!moved[v]) continue;
-                memcpy(t->vertex + 3 * v, home + 3 * v, 3 * sizeof *home);
-                moved[v] = 0;
+                double keep = --moved[v] ? 0.5 : 0;
+                for (int c = 0; c < 3; c++) t->vertex[3 * v + c] = home[3 * v + c] + keep * (t->vertex[3 * v + c] - home[3 * v + c]);
                 spoilt = true;
             }
         }

@@ -60,6 +60,7 @@ end
 ---@field velocity? OfPlace  at the start; at rest if absent
 ---@field sampling? "lattice"|"jittered"|"poisson"  "jittered" if absent
 ---@field discretisation? "particles"|"tetrahedra"  "particles" if absent
+---@field mesher? "lattice"|"gmsh"  of tetrahedra: a lattice in any shape ("lattice" if absent), or Gmsh within a mesh of triangles
 ---@field start? Vector|fun(x: number, y: number, z: number): number, number, number  where a vertex is at time 0; tetrahedra only
 
 --- A grip takes hold of whatever is inside a moving region.

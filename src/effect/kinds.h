@@ -14,4 +14,7 @@ typedef enum contact_kind { CONTACT_STICKY, CONTACT_SLIP, CONTACT_SEPARATE } con
 /* What a body is made of: material points on a grid, or linear tetrahedra whose F comes from the mesh. */
 typedef enum discretisation_kind { DISCRETISATION_PARTICLES, DISCRETISATION_TETRAHEDRA } discretisation_kind;
 
+/* Where tetrahedra come from: a lattice in any shape, or Gmsh within a triangle mesh. */
+typedef enum mesher_kind { MESHER_LATTICE, MESHER_GMSH } mesher_kind;
+
 #endif

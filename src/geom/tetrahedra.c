@@ -147,6 +147,8 @@ static status make(lattice *l, tetrahedra *out, report *r) {
         return report_input(r, NULL, 0, "dx", "a spacing that lets a cube's middle lie inside the shape", "a coarser one", NULL);
     out->vertex = memory_allocate_array((size_t)out->vertex_count, 3 * sizeof *out->vertex);
     out->corner = memory_allocate_array((size_t)out->count, 4 * sizeof *out->corner);
+    if (out->vertex) out->vertex_capacity = out->vertex_count;
+    if (out->corner) out->capacity = out->count;
     double *home = memory_allocate_array((size_t)out->vertex_count, 3 * sizeof *home);
     uint8_t *moved = memory_allocate_array((size_t)out->vertex_count, 1);
     bool whole = out->vertex && out->corner && home && moved;
@@ -170,7 +172,7 @@ status tetrahedra_fill(const shape *s, double edge, tetrahedra *out, report *r) 
 }
 
 void tetrahedra_free(tetrahedra *t) {
-    memory_free(t->vertex, t->vertex ? (size_t)t->vertex_count * 3 * sizeof *t->vertex : 0);
-    memory_free(t->corner, t->corner ? (size_t)t->count * 4 * sizeof *t->corner : 0);
+    memory_free(t->vertex, (size_t)t->vertex_capacity * 3 * sizeof *t->vertex);
+    memory_free(t->corner, (size_t)t->capacity * 4 * sizeof *t->corner);
     *t = (tetrahedra){0};
 }

@@ -10,6 +10,8 @@
 static const char *const contacts[] = {"sticky", "slip", "separate", NULL};
 static const char *const discretisations[] = {"particles", "tetrahedra", NULL};
 _Static_assert(DISCRETISATION_PARTICLES == 0 && DISCRETISATION_TETRAHEDRA == 1, "order of `discretisations`");
+static const char *const meshers[] = {"lattice", "gmsh", NULL};
+_Static_assert(MESHER_LATTICE == 0 && MESHER_GMSH == 1, "order of `meshers`");
 static const char *const samplings[] = {"lattice", "jittered", "poisson", NULL};
 _Static_assert(CONTACT_STICKY == 0 && CONTACT_SLIP == 1 && CONTACT_SEPARATE == 2, "order of `contacts`");
 _Static_assert(SAMPLING_LATTICE == 0 && SAMPLING_JITTERED == 1 && SAMPLING_POISSON == 2, "order of `samplings`");
@@ -74,7 +76,7 @@ static void read_body_material(script *s, int index, const place *p, scene_body 
 
 static void read_solid(script *s, int index, const place *p, int number) {
     char name[SCRIPT_TEXT] = "";
-    double sampling = SAMPLING_JITTERED, discretisation = DISCRETISATION_PARTICLES, middle[3];
+    double sampling = SAMPLING_JITTERED, discretisation = DISCRETISATION_PARTICLES, mesher = MESHER_LATTICE, middle[3];
     field fields[] = {{.key = "name", .kind = FIELD_TEXT, .text = name},
                       {.key = "shape", .kind = FIELD_OTHER, .required = true},
                       {.key = "material", .kind = FIELD_OTHER},
@@ -82,6 +84,7 @@ static void read_solid(script *s, int index, const place *p, int number) {
                       {.key = "velocity", .kind = FIELD_OTHER},
                       {.key = "sampling", .kind = FIELD_CHOICE, .choices = samplings, .number = &sampling},
                       {.key = "discretisation", .kind = FIELD_CHOICE, .choices = discretisations, .number = &discretisation},
+                      {.key = "mesher", .kind = FIELD_CHOICE, .choices = meshers, .number = &mesher},
                       {.key = "start", .kind = FIELD_OTHER}};
     scene_body *b = &s->scene->bodies[s->scene->body_count];
     s->body_places[s->scene->body_count++] = *p;
@@ -91,6 +94,7 @@ static void read_solid(script *s, int index, const place *p, int number) {
     if (!table) return;
     b->sampling = (sampling_kind)sampling;
     b->discretisation = (discretisation_kind)discretisation;
+    b->mesher = (mesher_kind)mesher;
     read_body_material(s, index, p, b);
     if (fields[1].given && (b->shape = read_shape_field(s, index, p)) && !is_bounded(b->shape, middle)) {
         place at = place_key(p, "shape");

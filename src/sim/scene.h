@@ -47,6 +47,7 @@ typedef struct scene_body {
     scene_fibres fibres;
     scene_function velocity; /* of place: initial velocity, 3 outputs; absent means at rest */
     discretisation_kind discretisation;
+    mesher_kind mesher;
     scene_function start;    /* of place at rest: where a vertex is at time 0, 3 outputs; tetrahedra only; absent means there */
 } scene_body;
 

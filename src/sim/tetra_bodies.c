@@ -59,7 +59,7 @@ status tetra_bodies_fill(const scene *s, body_particles *out, report *r) {
     status code = STATUS_OK;
     int families = 0;
     for (int b = 0; b < s->body_count && code == STATUS_OK; b++) {
-        code = tetrahedra_fill(s->bodies[b].shape, out->spacing, &meshes[b], r);
+        code = (s->bodies[b].mesher == MESHER_GMSH ? tetrahedra_fill_gmsh : tetrahedra_fill)(s->bodies[b].shape, out->spacing, &meshes[b], r);
         out->count += meshes[b].vertex_count;
         out->element_count += meshes[b].count;
         families = s->bodies[b].fibres.families > families ? s->bodies[b].fibres.families : families;

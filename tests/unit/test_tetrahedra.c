@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "geom/tetrahedra.h"
+#include "unit/mesh_files.h"
 
 static arena *memory;
 
@@ -119,12 +120,81 @@ static void memory_may_be_out(void) {
     CHECK(failures >= 6);
 }
 
+static const shape *shape_of(const made_mesh *made) {
+    made_file f = made_obj(made);
+    mesh m;
+    mesh_report facts;
+    report r;
+    CHECK(mesh_read("made.obj", f.data, f.size, &m, &r) == STATUS_OK && mesh_make_solid("made.obj", &m, &facts, &r) == STATUS_OK);
+    const shape *s = shape_mesh(memory, &m, "made.obj");
+    mesh_free(&m);
+    free(f.data);
+    return s;
+}
+
+/* Triangles cut to length: the surface is what it was, closed, and no side is too long. */
+static void long_sides_are_cut(void) {
+    static made_mesh made;
+    made_box(&made, (const double[]){0, 0, 0}, (const double[]){3, 0.5, 1});
+    mesh m;
+    mesh_report facts;
+    report r;
+    CHECK(shape_triangles(shape_of(&made), &m, &r) == STATUS_OK && m.triangle_count == 12);
+    CHECK(mesh_cut_long_sides(&m, 0.2, &r) == STATUS_OK);
+    CHECK(mesh_inspect(&m, &facts, &r) == STATUS_OK);
+    CHECK(facts.boundary_edges == 0 && facts.nonmanifold_edges == 0 && facts.opposed_edges == 0 && facts.orientation == MESH_OUTWARD);
+    CHECK_NEAR(facts.volume, 1.5, 1e-12);
+    double longest = 0;
+    for (int64_t i = 0; i < 3 * m.triangle_count; i++) {
+        const double *a = m.vertex + 3 * (int64_t)m.triangle[i], *b = m.vertex + 3 * (int64_t)m.triangle[i - i % 3 + (i + 1) % 3];
+        longest = fmax(longest, hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]));
+    }
+    CHECK(longest <= 0.2 && m.triangle_count < 4000);
+    mesh_free(&m);
+}
+
+/* A box and a torus, moved: as large as they are, face to face, the surface's corners kept. */
+static void gmsh_fills_meshes(void) {
+    static made_mesh box, ring;
+    tetrahedra t;
+    report r;
+    made_box(&box, (const double[]){0, 0, 0}, (const double[]){1, 2, 1});
+    made_torus(&ring, 1, 0.4, 60, 30);
+    if (!tetrahedra_gmsh_version(&r)) {
+        printf("  Gmsh is not there: %s\n", r.expected);
+        CHECK(tetrahedra_fill_gmsh(shape_of(&box), 0.25, &t, &r) == STATUS_INPUT && strcmp(r.key, "mesher") == 0 && strstr(r.expected, "libgmsh"));
+        return;
+    }
+    CHECK(tetrahedra_fill_gmsh(shape_of(&box), 0.25, &t, &r) == STATUS_OK);
+    printf("  box: %lld tetrahedra of %lld vertices\n", (long long)t.count, (long long)t.vertex_count);
+    CHECK_NEAR(volume_of(&t), 2, 1e-9);
+    CHECK(t.count > 300 && t.count < 10000 && outer_faces(&t) >= 12 * 16);
+    tetrahedra_free(&t);
+    const double turn[9] = {0, -1, 0, 1, 0, 0, 0, 0, 1}, aside[3] = {5, 0, 0};
+    const shape *moved = shape_transform(memory, shape_of(&ring), turn, 2, aside);
+    CHECK(shape_is_mesh(moved) && tetrahedra_fill_gmsh(moved, 0.3, &t, &r) == STATUS_OK);
+    printf("  torus: %lld tetrahedra of %lld vertices\n", (long long)t.count, (long long)t.vertex_count);
+    CHECK_NEAR(volume_of(&t) / (8 * 2 * M_PI * M_PI * 0.16), 1, 0.01);
+    CHECK(outer_faces(&t) == 2 * 60 * 30); /* no side is over 1.5 × 0.3 */
+    for (int64_t v = 0; v < t.vertex_count; v++) CHECK(fabs(t.vertex[3 * v] - 5) < 2.81);
+    tetrahedra_free(&t);
+    /* again, with the library already there, gives the same */
+    tetrahedra again;
+    CHECK(tetrahedra_fill_gmsh(moved, 0.3, &t, &r) == STATUS_OK && tetrahedra_fill_gmsh(moved, 0.3, &again, &r) == STATUS_OK);
+    CHECK(t.count == again.count && t.vertex_count == again.vertex_count);
+    CHECK(memcmp(t.corner, again.corner, (size_t)t.count * 16) == 0 && memcmp(t.vertex, again.vertex, (size_t)t.vertex_count * 24) == 0);
+    tetrahedra_free(&t), tetrahedra_free(&again);
+    CHECK(tetrahedra_fill_gmsh(shape_sphere(memory, (const double[]){0, 0, 0}, 1), 0.3, &t, &r) == STATUS_INPUT && strcmp(r.key, "mesher") == 0);
+}
+
 int main(void) {
     memory = arena_create("test");
     RUN(a_box_is_filled_exactly);
     RUN(round_shapes_are_near);
     RUN(wrong_input_is_named);
     RUN(memory_may_be_out);
+    RUN(long_sides_are_cut);
+    RUN(gmsh_fills_meshes);
     arena_destroy(memory);
     return check_finish();
 }

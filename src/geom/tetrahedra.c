@@ -11,7 +11,7 @@ enum { CORNERS = 8, PARTS = 5, RETREATS = 3 };
 static const double CUBE_LIMIT = 0x1p28;
 
 /* Least volume that a tetrahedron at the surface keeps of the lattice's. */
-static const double LEAST_PART = 0.125;
+static const double LEAST_PART = 0.3;
 
 /* A cube's corner c lies at (c & 1, c >> 1 & 1, c >> 2). The middle one of five has the corners with an even number of ones, or the odd ones;
  * a neighbour has the other kind, so the diagonals of a common face are one. */

@@ -15,7 +15,7 @@ typedef struct tetrahedra {
 
 /* The lattice: cubes of about `edge`, fitted to the shape's box, whose middle lies inside, each cut into five tetrahedra, alternately left and right so that
  * faces meet (Kuhn's six have a grain). A box is filled exactly; elsewhere vertices of the stair-stepped surface move onto the shape's, those that
- * a tetrahedron would suffer from (volume under an eighth of what it was) excepted. Needs no library. Order depends on (shape, edge)
+ * a tetrahedron would suffer from (volume under 0.3 of what it was) excepted. Needs no library. Order depends on (shape, edge)
  * alone. Errors: STATUS_INPUT when the shape is unbounded, holds no cube or too many; STATUS_SYSTEM out of memory; `out` is then empty. */
 status tetrahedra_fill(const shape *s, double edge, tetrahedra *out, report *r);
 

@@ -3,6 +3,7 @@
  * - Corner forces are minus the gradient of the stored energy, in crumpled and inverted states (central differences).
  * - F of an affine map is that map in every element, and inner vertices feel no force.
  * - Momentum and angular momentum are kept; the energy of a vibrating body too, at the full step limit.
+ * - Of a soft body that flies apart the change of F limits the step.
  * - A bar in slow tension between grips gives back E; a vertex falls with gravity.
  * - Recovery: vertices anywhere in a box, or all in one point but for seeds of 1e-6, return to the rest shape with all J > 0, in f32 and f64, with two
  *   families of fibres, γ λ/μ > 1. Without fibres the collapsed body stays collapsed, as METHOD.md says: no force acts at F = 0. */
@@ -175,6 +176,24 @@ static void momenta_and_energy_are_kept(void) {
     CHECK(full < 1); /* no growth without bound at the limit itself */
 }
 
+static status swell(void *context, const double *x, int inputs, double *v, int outputs, report *r) {
+    (void)context, (void)inputs, (void)outputs, (void)r;
+    for (int c = 0; c < 3; c++) v[c] = 7 * x[c];
+    return STATUS_OK;
+}
+
+/* A soft body that flies apart: not stiffness but the change of F limits its step, to half of |F|. */
+static void fast_change_limits_the_step(void) {
+    scene *s = cube_of(3, 0);
+    s->materials[0].effects[EFFECT_elastic].value[0][0] = 1e-6;
+    s->cfl = 1;
+    s->bodies[0].velocity = (scene_function){.outputs = 3, .call = swell};
+    simulation *sim = test_simulation(s, 64, "auto", 1);
+    CHECK_NEAR(simulation_get_plan(sim)->limits[EFFECT_elastic], 0.5 / 7, 1e-9);
+    simulation_destroy(sim);
+    scene_destroy(s);
+}
+
 static const shape *bar(arena *a) {
     return shape_box(a, (const double[]){-2, -0.5, -0.5}, (const double[]){2, 0.5, 0.5});
 }
@@ -277,6 +296,7 @@ int main(void) {
     RUN(affine_maps_are_exact);
     RUN(forces_are_the_gradient_of_energy);
     RUN(momenta_and_energy_are_kept);
+    RUN(fast_change_limits_the_step);
     RUN(a_bar_in_tension_gives_back_E);
     RUN(gravity_and_damping_act);
     RUN(every_vertex_anywhere_finds_back);

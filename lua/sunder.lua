@@ -62,6 +62,41 @@ end
 ---@field discretisation? "particles"|"tetrahedra"  "particles" if absent
 ---@field mesher? "lattice"|"gmsh"  of tetrahedra: a lattice in any shape ("lattice" if absent), or Gmsh within a mesh of triangles
 ---@field start? Vector|fun(x: number, y: number, z: number): number, number, number  where a vertex is at time 0; tetrahedra only
+---@field notches? Shape[]  what lies inside starts broken; for a gap without material subtract a shape: `shape - cut`
+
+--- A cut that a sheet has from the start: the straight line from … to, or a thin shape.
+---@class Notch
+---@field from? Vector
+---@field to? Vector
+---@field shape? Shape
+
+--- Feeds what diffuses in a sheet: everywhere, inside a shape, or in round spots at random places.
+---@class Source
+---@field shape? Shape
+---@field spots? integer  with radius
+---@field radius? number
+---@field rate? number|fun(x: number, y: number, z: number): number  added a unit of time
+---@field value? number|fun(x: number, y: number, z: number): number  held
+---@field start? number  0 if absent
+---@field stop? number  never if absent
+
+--- A sheet: one layer of particles where a plane cuts a shape, or on a shape's surface.
+---@class Sheet
+---@field name? string
+---@field shape Shape
+---@field material Material|string
+---@field thickness number
+---@field spacing? number  of particles; from dx or particles if absent
+---@field lattice? "square"|"hexagonal"|"scattered"  "square" if absent
+---@field radius? number  bonds reach this many spacings, 1.2 to 6; 1.5 if absent
+---@field surface? boolean  the shape's own surface instead of a plane's cut
+---@field point? Vector  of the plane; the origin if absent
+---@field normal? Axis  of the plane; z if absent
+---@field ripple? number  random places out of the plane at the start, in spacings
+---@field notches? Notch[]
+---@field sources? Source[]
+---@field grain? Fibres  direction in which the material's grain runs
+---@field velocity? OfPlace
 
 --- A grip takes hold of whatever is inside a moving region.
 ---@class Grip
@@ -110,8 +145,9 @@ end
 ---@field laplacian? "quadratic"|"cubic"
 ---@field domain? { min: Vector, max: Vector }
 ---@field gravity? Vector
----@field damping? number
----@field solids Solid[]
+---@field mass_damping? number
+---@field solids? Solid[]
+---@field sheets? Sheet[]  instead of solids
 ---@field grips? Grip[]
 ---@field colliders? Collider[]
 ---@field walls? Wall[]
@@ -171,6 +207,81 @@ end
 ---@return Shape
 function s.box(t)
   return core.shape("box", t)
+end
+
+--- A flat box around the plane z = center.z, for sheets.
+---@param t { size: number[], center?: Vector }
+---@return Shape
+function s.rectangle(t)
+  return core.shape("box", { center = t.center or { 0, 0, 0 }, size = { t.size[1], t.size[2], t.size[1] + t.size[2] } })
+end
+
+--- A cylinder along z, for sheets.
+---@param t { radius: number, center?: Vector }
+---@return Shape
+function s.disk(t)
+  return core.shape("cylinder", { axis = "z", radius = t.radius, length = t.radius, center = t.center or { 0, 0, 0 } })
+end
+
+-- Whether q lies in the triangle a b c, borders included; all run counter-clockwise.
+local function holds(a, b, c, q)
+  local function side(u, v)
+    return (v[1] - u[1]) * (q[2] - u[2]) - (v[2] - u[2]) * (q[1] - u[1])
+  end
+  return side(a, b) >= 0 and side(b, c) >= 0 and side(c, a) >= 0
+end
+
+-- A triangle as three half-spaces, a hair larger than it is: neighbours must not leave a seam.
+local function triangle(a, b, c, slab, hair)
+  local shape = slab
+  for _, edge in ipairs { { a, b }, { b, c }, { c, a } } do
+    local u, v = edge[1], edge[2]
+    local nx, ny = v[2] - u[2], u[1] - v[1]
+    local length = math.sqrt(nx * nx + ny * ny)
+    nx, ny = nx / length, ny / length
+    shape = shape * core.shape("half_space", { point = { u[1] + hair * nx, u[2] + hair * ny, 0 }, normal = { nx, ny, 0 } })
+  end
+  return shape
+end
+
+--- A prism along z over a polygon without crossings, for sheets: corners { {x, y}, … } in order.
+---@param corners number[][]
+---@return Shape
+function s.polygon(corners)
+  local left, area, low, high = {}, 0, { math.huge, math.huge }, { -math.huge, -math.huge }
+  for i, corner in ipairs(corners) do
+    local after = corners[i % #corners + 1]
+    left[i] = corner
+    area = area + corner[1] * after[2] - corner[2] * after[1]
+    for axis = 1, 2 do
+      low[axis], high[axis] = math.min(low[axis], corner[axis]), math.max(high[axis], corner[axis])
+    end
+  end
+  if area < 0 then
+    for i = 1, #corners do left[i] = corners[#corners + 1 - i] end
+  end
+  local size = math.max(high[1] - low[1], high[2] - low[2])
+  local slab = core.shape("box", { min = { low[1] - size, low[2] - size, -size }, max = { high[1] + size, high[2] + size, size } })
+  local whole
+  -- Ears are cut off one by one.
+  while #left >= 3 do
+    local cut
+    for i = 1, #left do
+      local a, b, c = left[(i - 2) % #left + 1], left[i], left[i % #left + 1]
+      local ear = (b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1]) > 0
+      for j = 1, #left do
+        local q = left[j]
+        ear = ear and (q == a or q == b or q == c or not holds(a, b, c, q))
+      end
+      if ear then cut = i break end
+    end
+    if not cut then error("s.polygon: corners of a polygon that does not cross itself are expected", 2) end
+    local piece = triangle(left[(cut - 2) % #left + 1], left[cut], left[cut % #left + 1], slab, 1e-9 * size)
+    whole = whole and whole + piece or piece
+    table.remove(left, cut)
+  end
+  if not whole then error("s.polygon: at least three corners are expected", 2) end
+  return whole
 end
 
 ---@param t { axis: Axis, radius: number, length: number, center?: Vector }

@@ -9,8 +9,7 @@
 --   form        explicit   each particle from its own driving force; eta limits the time step
 --               implicit   solved on the grid by conjugate gradients; any eta
 --
--- What to look for: all four draw the same crack, straight down from the notch (the implicit ones wider, for now: they
--- break nearly twice as much).
+-- What to look for: all four draw the same crack, straight down from the notch.
 --
 -- Try:  sunder run scenes/solid/damage_disk.lua --set laplacian=cubic
 --       sunder run scenes/solid/damage_disk.lua --set form=implicit --set eta=0.001

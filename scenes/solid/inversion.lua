@@ -53,7 +53,7 @@ local figure = s.capsule { from = { 0, -0.25, 0 }, to = { 0, 0.3, 0 }, radius = 
 
 return s.scene {
   title   = "Inversion",
-  damping = 6,
+  mass_damping = 6,
   solids  = {
     {
       name           = "figure",

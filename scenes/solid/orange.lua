@@ -47,7 +47,7 @@ return s.scene {
   transfer_ratio = 0.01,
 
   solids = {
-    { name = "flesh", shape = disk(flesh), material = s.recipe "orange_flesh", fibres = walls },
+    { name = "flesh", shape = disk(flesh), material = s.recipe "orange", fibres = walls },
     { name = "skin", shape = disk(skin) - disk(flesh), material = s.recipe "orange_skin", fibres = walls },
   },
 

@@ -27,9 +27,9 @@ local height, foot, bore, taper = 1, 0.35, 0.20, 0.7
 
 -- lame = "paper": the authors use the plain Lamé coefficient.
 local material = ({
-  full         = s.recipe("toy", { elastic = { lame = "paper" } }),
-  isotropic    = s.recipe("toy", { elastic = { lame = "paper" }, fibres = false, damage = { alpha = 0 } }),
-  elastic_only = s.recipe("toy", { elastic = { lame = "paper" }, damage = false }),
+  full         = s.recipe("cardboard", { elastic = { lame = "paper" } }),
+  isotropic    = s.recipe("cardboard", { elastic = { lame = "paper" }, fibres = false, damage = { alpha = 0 } }),
+  elastic_only = s.recipe("cardboard", { elastic = { lame = "paper" }, damage = false }),
 })[p.variant]
 
 return s.scene {

@@ -243,4 +243,50 @@ SIMD_INLINE void row_fold(node_row r, real *four) {
 #endif
 }
 
+/* ---- gathers ----------------------------------------------------------------------------------------------------- */
+
+/* base[index[i] · stride] of each lane. */
+SIMD_INLINE vec vec_gather(const real *base, const int32_t *index, int stride) {
+    real lanes[VEC_LANES];
+    for (int i = 0; i < VEC_LANES; i++) lanes[i] = base[(int64_t)index[i] * stride];
+    return vec_load(lanes);
+}
+
+/* Four reals from base + index[i] · stride of each lane, turned: out[c] holds component c. A load of 16 or 32 bytes a lane costs less
+ * than four gathers. */
+SIMD_INLINE void vec_gather4(const real *base, const int32_t *index, int stride, vec out[4]) {
+#define GATHER_ROW(i) (base + (int64_t)index[i] * stride)
+#if SUNDER_SIMD == 2 && SUNDER_PRECISION == 32
+    __m512 row[4];
+    for (int k = 0; k < 4; k++) { /* rows k, k + 4, k + 8, k + 12 */
+        __m512 r = _mm512_castps128_ps512(_mm_loadu_ps(GATHER_ROW(k)));
+        r = _mm512_insertf32x4(r, _mm_loadu_ps(GATHER_ROW(k + 4)), 1);
+        r = _mm512_insertf32x4(r, _mm_loadu_ps(GATHER_ROW(k + 8)), 2);
+        row[k] = _mm512_insertf32x4(r, _mm_loadu_ps(GATHER_ROW(k + 12)), 3);
+    }
+    __m512 low01 = _mm512_unpacklo_ps(row[0], row[1]), low23 = _mm512_unpacklo_ps(row[2], row[3]);
+    __m512 high01 = _mm512_unpackhi_ps(row[0], row[1]), high23 = _mm512_unpackhi_ps(row[2], row[3]);
+    out[0] = _mm512_shuffle_ps(low01, low23, 0x44);
+    out[1] = _mm512_shuffle_ps(low01, low23, 0xee);
+    out[2] = _mm512_shuffle_ps(high01, high23, 0x44);
+    out[3] = _mm512_shuffle_ps(high01, high23, 0xee);
+#elif SUNDER_SIMD == 1 && SUNDER_PRECISION == 32
+    __m256 row[4];
+    for (int k = 0; k < 4; k++)
+        row[k] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(GATHER_ROW(k))), _mm_loadu_ps(GATHER_ROW(k + 4)), 1);
+    __m256 low01 = _mm256_unpacklo_ps(row[0], row[1]), low23 = _mm256_unpacklo_ps(row[2], row[3]);
+    __m256 high01 = _mm256_unpackhi_ps(row[0], row[1]), high23 = _mm256_unpackhi_ps(row[2], row[3]);
+    out[0] = _mm256_shuffle_ps(low01, low23, 0x44);
+    out[1] = _mm256_shuffle_ps(low01, low23, 0xee);
+    out[2] = _mm256_shuffle_ps(high01, high23, 0x44);
+    out[3] = _mm256_shuffle_ps(high01, high23, 0xee);
+#else
+    real turned[4][VEC_LANES];
+    for (int i = 0; i < VEC_LANES; i++)
+        for (int c = 0; c < 4; c++) turned[c][i] = GATHER_ROW(i)[c];
+    for (int c = 0; c < 4; c++) out[c] = vec_load(turned[c]);
+#endif
+#undef GATHER_ROW
+}
+
 #endif

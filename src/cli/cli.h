@@ -30,6 +30,18 @@ typedef struct command {
 /* The table of commands and its length. */
 const command *command_table(int *count);
 
+/* What `bench sheet` was asked for. */
+typedef struct sheet_bench_matrix {
+    bool json;
+    const long *sizes;
+    const int *threads, *precisions;
+    int size_count, thread_count, precision_count, repeat;
+    double seconds;
+} sheet_bench_matrix;
+
+/* command_bench_sheet.c: times it and prints; the exit code. */
+int command_bench_sheet(const sheet_bench_matrix *q);
+
 /* Prints a report as one line on standard error, after "sunder: ", and returns its exit code. */
 int cli_fail(const report *r);
 

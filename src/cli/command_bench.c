@@ -18,7 +18,7 @@ static const double BUDGET = 540; /* seconds of the default matrix: the contract
 
 typedef struct bench_request {
     bench_options options; /* what all rows share */
-    bool json, full;
+    bool json, full, sheet;
     const char *csv;
     int case_count, size_count, thread_count, precision_count;
     const bench_case *cases[CHOICES];
@@ -109,7 +109,8 @@ static int parse_option(bench_request *q, int option) {
 
 /* What was not asked for by name is everything; 4 M particles only with --full, because of the ten minutes. */
 static void complete(bench_request *q) {
-    static const long sizes[] = {50000, 500000, 4000000};
+    static const long of_solids[] = {50000, 500000, 4000000}, of_sheets[] = {10000, 1000000, 4000000};
+    const long *sizes = q->sheet ? of_sheets : of_solids;
     const bench_case *all;
     int count = bench_cases(&all);
     if (q->case_count == 0)
@@ -129,12 +130,10 @@ static int parse(bench_request *q, int count, char **arguments) {
         int code = parse_option(q, option);
         if (code) return code;
     }
-    if (optind != count - 1) return cli_usage("bench", "expected what to measure: step");
-    if (strcmp(arguments[optind], "sheet") == 0) {
-        fprintf(stderr, "sunder bench: the sheet engine is not in this version: there is nothing to measure\n");
-        return 2;
-    }
-    if (strcmp(arguments[optind], "step") != 0) return cli_usage("bench", "%s: expected step", arguments[optind]);
+    if (optind != count - 1) return cli_usage("bench", "expected what to measure: step or sheet");
+    q->sheet = strcmp(arguments[optind], "sheet") == 0;
+    if (!q->sheet && strcmp(arguments[optind], "step") != 0) return cli_usage("bench", "%s: expected step or sheet", arguments[optind]);
+    if (q->sheet && (q->case_count || q->csv)) return cli_usage("bench", "sheet: --case and --csv belong to step");
     complete(q);
     return 0;
 }
@@ -357,6 +356,10 @@ int command_bench(int count, char **arguments) {
     q.options = bench_options_default();
     int code = parse(&q, count, arguments);
     if (code) return code;
+    if (q.sheet)
+        return command_bench_sheet(&(sheet_bench_matrix){.json = q.json, .sizes = q.sizes, .threads = q.threads, .precisions = q.precisions,
+                                                         .size_count = q.size_count, .thread_count = q.thread_count,
+                                                         .precision_count = q.precision_count, .repeat = q.options.repeat, .seconds = q.options.seconds});
     FILE *out = q.json ? stderr : stdout;
     report r;
     if (measure_machine(&q, &b, &r) != STATUS_OK) return cli_fail(&r);

@@ -70,9 +70,22 @@ static void free_floats(float *values, const record *item) {
     if (values) memory_free(values, (size_t)item->count * (size_t)item->components * sizeof *values);
 }
 
+static const record *find_position(const record_list *records) {
+    const record *position = record_find(records, "solid/position");
+    return position ? position : record_find(records, "sheet/position");
+}
+
+/* What a picture shows unless it is told: damage, what diffuses, broken bonds. */
+static const record *find_colour(const record_list *records) {
+    static const char *const names[] = {"solid/damage", "sheet/diffused", "sheet/broken"};
+    const record *found = NULL;
+    for (int i = 0; i < 3 && !found; i++) found = record_find(records, names[i]);
+    return found;
+}
+
 /* Widens the box by a frame's particles. */
 static void widen(const record_list *records, float low[3], float high[3]) {
-    const record *position = record_find(records, "solid/position");
+    const record *position = find_position(records);
     float *points = as_floats(position), here_low[3], here_high[3];
     if (points && view_bounds(points, position->count, here_low, here_high) > 0)
         for (int c = 0; c < 3; c++) {
@@ -100,10 +113,10 @@ static status fit_camera(const char *folder, int64_t frame, view_camera *camera,
 }
 
 static status draw(const render_options *o, const record_list *records, view_render_options *look, report *r) {
-    const record *position = record_find(records, "solid/position");
-    const record *value = record_find(records, o->colour ? o->colour : "solid/damage");
+    const record *position = find_position(records);
+    const record *value = o->colour ? record_find(records, o->colour) : find_colour(records);
     if (o->colour && (!value || value->components != 1))
-        return report_input(r, NULL, 0, "--colour", "a field of the frame with one component, such as solid/damage", o->colour, NULL);
+        return report_input(r, NULL, 0, "--colour", "a field of the frame with one component, such as solid/damage or sheet/diffused", o->colour, NULL);
     float *points = as_floats(position), *values = as_floats(value);
     size_t bytes = (size_t)look->width * (size_t)look->height * 3;
     uint8_t *rgb = memory_allocate(bytes);

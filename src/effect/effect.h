@@ -61,6 +61,7 @@ typedef struct effect_values {
 } effect_values;
 
 struct solid_stages; /* src/solid/state.h */
+struct sheet_stages; /* src/sheet/state.h */
 
 typedef struct effect {
     const char *name; /* the scene's word, e.g. "damage" */
@@ -80,7 +81,8 @@ typedef struct effect {
     const char *provides; /* what others may need of it where several effects are alternatives ("elasticity"), or NULL; a material
                            * has at most one that provides the same */
     const char *needs;    /* an effect, by name or by what it provides, that must be on beside this one; or NULL */
-    const struct solid_stages *stages; /* what runs; NULL in effects whose work is the engine's own */
+    const struct solid_stages *stages; /* what runs in the solid engine; NULL in effects whose work is the engine's own */
+    const struct sheet_stages *sheet;  /* what runs in the sheet engine; likewise */
 } effect;
 
 /* The index of a parameter in its effect, or -1. */

@@ -8,9 +8,6 @@ typedef enum transfer_kind { TRANSFER_APIC, TRANSFER_RPIC, TRANSFER_PIC, TRANSFE
 /* B-splines. */
 typedef enum kernel_kind { KERNEL_QUADRATIC, KERNEL_CUBIC } kernel_kind;
 
-/* sticky: no relative motion; slip: no normal motion; separate: may leave, not enter. */
-typedef enum contact_kind { CONTACT_STICKY, CONTACT_SLIP, CONTACT_SEPARATE } contact_kind;
-
 /* What a body is made of: material points on a grid, or linear tetrahedra whose F comes from the mesh. */
 typedef enum discretisation_kind { DISCRETISATION_PARTICLES, DISCRETISATION_TETRAHEDRA } discretisation_kind;
 

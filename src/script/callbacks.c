@@ -59,7 +59,7 @@ static void read_results(lua_State *L, request *q, int first) {
     char expected[96], found[160];
     q->results = spread_vector(L, first);
     bool any = q->outputs < 0;
-    snprintf(expected, sizeof expected, any ? "three numbers, or six for two families" : "%d finite numbers",
+    snprintf(expected, sizeof expected, any ? "three numbers, or six for two families" : q->outputs == 1 ? "%d finite number" : "%d finite numbers",
              q->outputs);
     if (any ? q->results != 3 && q->results != 6 : q->results != q->outputs) {
         snprintf(found, sizeof found, "%d result%s", q->results, q->results == 1 ? "" : "s");
@@ -151,6 +151,17 @@ void read_function(script *s, int index, const place *p, scene_function *out) {
     problem_place(s, p, "three finite numbers {x, y, z}, or a function that returns them", v.found, NULL);
 }
 
+void read_scalar_function(script *s, int index, const place *p, scene_function *out) {
+    index = lua_absindex(s->L, index);
+    if (lua_isfunction(s->L, index)) {
+        make_callback(s, index, p, 1, out);
+        return;
+    }
+    plain_value v = plain_from_lua(s->L, index);
+    *out = (scene_function){.outputs = 1, .constant = {v.number[0]}};
+    if (v.kind != PLAIN_NUMBER || !isfinite(v.number[0])) problem_place(s, p, "a finite number, or a function of place that returns one", v.found, NULL);
+}
+
 /* ---- trying ------------------------------------------------------------------------------------------------------ */
 
 static bool is_lua(const scene_function *f) {
@@ -225,6 +236,15 @@ void try_functions(script *s) {
         try_fibres(s, &b->fibres, points, count);
         try_places(s, &b->velocity, points, count);
         try_places(s, &b->start, points, count);
+    }
+    for (int i = 0; i < sc->sheet_count; i++) {
+        scene_sheet *b = &sc->sheets[i];
+        if (!b->region.shape) continue;
+        double points[PLACE_CALLS][3];
+        int count = points_inside(b->region.shape, points);
+        try_fibres(s, &b->grain, points, count);
+        try_places(s, &b->velocity, points, count);
+        for (int k = 0; k < b->source_count; k++) try_places(s, &b->sources[k].value, points, count);
     }
     for (int i = 0; i < sc->grip_count; i++) {
         scene_grip *g = &sc->grips[i];

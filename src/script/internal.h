@@ -81,6 +81,7 @@ struct script {
     place here;              /* the call into the module that is running */
     int scene_line;          /* of the call of s.scene */
     place body_places[SCENE_BODIES];
+    place sheet_places[SCENE_SHEETS];
     int source_count, declared_count, override_count, watch_count;
     source_file sources[SCRIPT_SOURCES];
     declaration declared[SCRIPT_DECLARED];
@@ -249,6 +250,8 @@ void read_fibres(script *s, int index, const place *p, const shape *body, scene_
 /* ---- callbacks.c ---- */
 /* Reads a constant vector, or a Lua function, of three outputs. */
 void read_function(script *s, int index, const place *p, scene_function *out);
+/* The same of one output: a number, or a function of place that returns one. */
+void read_scalar_function(script *s, int index, const place *p, scene_function *out);
 /* Makes a callback of the Lua function at `index`; `p` names it in messages. */
 void make_callback(script *s, int index, const place *p, int outputs, scene_function *out);
 /* Calls every function of the scene once or a few times, where and when the simulation may call it too; records
@@ -280,8 +283,20 @@ bool scene_key_set(scene *s, int key, plain_value *v, char *expected, size_t siz
 void scene_key_show(const scene *s, int key, scene_parameter *out);
 
 /* ---- scene_table.c ---- */
+/* Names are kept short: 63 bytes. An absent one becomes "solid 2" and the like. */
+void copy_name(script *s, const place *p, const char *given, const char *kind, int number, char out[64]);
+/* Pushes the value under `key` of the table at `index`; whether there is one. */
+bool push_value(lua_State *L, int index, const char *key);
+/* Under the keys `shape`, `key` and `material` of the table at `index`. */
+const shape *read_shape_field(script *s, int index, const place *p);
+void function_field(script *s, int index, const place *p, const char *key, scene_function *out);
+int read_body_material(script *s, int index, const place *p, const char *body);
 /* Reads the table that the scene file returned (top of the stack). */
 void read_scene(lua_State *L, const char *file);
+
+/* ---- sheets.c ---- */
+/* Reads one of `sheets`. */
+void read_sheet(script *s, int index, const place *p, int number);
 
 /* ---- settings.c ---- */
 /* Applies what s.params did not take: scene keys and knobs. Unknown keys are recorded. */

@@ -17,7 +17,7 @@ _Static_assert(CONTACT_STICKY == 0 && CONTACT_SLIP == 1 && CONTACT_SEPARATE == 2
 _Static_assert(SAMPLING_LATTICE == 0 && SAMPLING_JITTERED == 1 && SAMPLING_POISSON == 2, "order of `samplings`");
 
 /* Names are kept short: 63 bytes. An absent one becomes "solid 2" and the like. */
-static void copy_name(script *s, const place *p, const char *given, const char *kind, int number, char out[64]) {
+void copy_name(script *s, const place *p, const char *given, const char *kind, int number, char out[64]) {
     place at = place_key(p, "name");
     if (strlen(given) > 63) problem_place(s, &at, "a name of at most 63 bytes", given, NULL);
     if (*given)
@@ -27,12 +27,12 @@ static void copy_name(script *s, const place *p, const char *given, const char *
 }
 
 /* Pushes the value under `key` of the table at `index`; whether there is one. */
-static bool push_value(lua_State *L, int index, const char *key) {
+bool push_value(lua_State *L, int index, const char *key) {
     lua_pushstring(L, key);
     return lua_rawget(L, index) != LUA_TNIL;
 }
 
-static const shape *read_shape_field(script *s, int index, const place *p) {
+const shape *read_shape_field(script *s, int index, const place *p) {
     place at = place_key(p, "shape");
     push_value(s->L, index, "shape");
     const shape *found = read_shape(s, -1, &at);
@@ -40,7 +40,7 @@ static const shape *read_shape_field(script *s, int index, const place *p) {
     return found;
 }
 
-static void function_field(script *s, int index, const place *p, const char *key, scene_function *out) {
+void function_field(script *s, int index, const place *p, const char *key, scene_function *out) {
     place at = place_key(p, key);
     if (push_value(s->L, index, key)) read_function(s, -1, &at, out);
     lua_pop(s->L, 1);
@@ -59,19 +59,40 @@ static bool is_bounded(const shape *body, double middle[3]) {
     return bounded;
 }
 
-static void read_body_material(script *s, int index, const place *p, scene_body *b) {
+int read_body_material(script *s, int index, const place *p, const char *body) {
     lua_State *L = s->L;
+    int material = -1;
     place at = place_key(p, "material");
     if (s->recipe) {
         place option = {.file = s->sources[0].display, .line = s->scene_line, .call = "--recipe"};
         lua_pushstring(L, s->recipe);
-        b->material = read_material(s, -1, &option, b->name);
+        material = read_material(s, -1, &option, body);
     } else if (push_value(L, index, "material")) {
-        b->material = read_material(s, -1, &at, b->name);
+        material = read_material(s, -1, &at, body);
     } else {
         problem_place(s, &at, "a value: this key is required", "nothing", NULL);
     }
     lua_pop(L, 1);
+    return material;
+}
+
+/* A list of shapes, as their union. */
+static const shape *read_notches(script *s, int index, const place *p) {
+    const shape *shapes[SCENE_NOTCHES];
+    int count = read_list(s, index, p, SCENE_NOTCHES, "a list of shapes: notches = { s.box { … }, … }");
+    bool fine = count > 0;
+    for (int i = 1; i <= count; i++) {
+        place at = place_index(p, i);
+        lua_rawgeti(s->L, index, i);
+        shapes[i - 1] = read_shape(s, -1, &at);
+        fine = fine && shapes[i - 1];
+        lua_pop(s->L, 1);
+    }
+    if (!fine) return NULL;
+    scene_charge(s->L, 1 + count / 8);
+    const shape *made = shape_union(s->scene->memory, shapes, count);
+    if (!made) throw_memory(s->L);
+    return made;
 }
 
 static void read_solid(script *s, int index, const place *p, int number) {
@@ -82,6 +103,7 @@ static void read_solid(script *s, int index, const place *p, int number) {
                       {.key = "material", .kind = FIELD_OTHER},
                       {.key = "fibres", .kind = FIELD_OTHER},
                       {.key = "velocity", .kind = FIELD_OTHER},
+                      {.key = "notches", .kind = FIELD_OTHER},
                       {.key = "sampling", .kind = FIELD_CHOICE, .choices = samplings, .number = &sampling},
                       {.key = "discretisation", .kind = FIELD_CHOICE, .choices = discretisations, .number = &discretisation},
                       {.key = "mesher", .kind = FIELD_CHOICE, .choices = meshers, .number = &mesher},
@@ -95,7 +117,7 @@ static void read_solid(script *s, int index, const place *p, int number) {
     b->sampling = (sampling_kind)sampling;
     b->discretisation = (discretisation_kind)discretisation;
     b->mesher = (mesher_kind)mesher;
-    read_body_material(s, index, p, b);
+    b->material = read_body_material(s, index, p, b->name);
     if (fields[1].given && (b->shape = read_shape_field(s, index, p)) && !is_bounded(b->shape, middle)) {
         place at = place_key(p, "shape");
         problem_place(s, &at, "a bounded shape for a body", "one that has no end", NULL);
@@ -105,6 +127,9 @@ static void read_solid(script *s, int index, const place *p, int number) {
     lua_pop(s->L, 1);
     function_field(s, index, p, "velocity", &b->velocity);
     function_field(s, index, p, "start", &b->start);
+    at = place_key(p, "notches");
+    if (push_value(s->L, index, "notches")) b->notches = read_notches(s, lua_gettop(s->L), &at);
+    lua_pop(s->L, 1);
 }
 
 /* ---- grips, colliders, walls ------------------------------------------------------------------------------------- */
@@ -228,6 +253,7 @@ typedef struct list_key {
 
 static const list_key lists[] = {
     {"solids", "a list of solids: solids = { { shape = …, material = … }, … }", SCENE_BODIES, read_solid},
+    {"sheets", "a list of sheets: sheets = { { shape = …, material = …, thickness = … }, … }", SCENE_SHEETS, read_sheet},
     {"grips", "a list of grips: grips = { { shape = …, velocity = … }, … }", SCENE_GRIPS, read_grip},
     {"colliders", "a list of colliders: colliders = { { shape = … }, … }", SCENE_COLLIDERS, read_collider},
     {"walls", "a list of walls: walls = { { point = …, normal = … }, … }", SCENE_COLLIDERS, read_wall},
@@ -279,14 +305,6 @@ static void report_unknown(script *s, const place *p, const char *name) {
                   name_nearest(name, names, count));
 }
 
-static bool has_sheet_effects(void) {
-    int count;
-    const effect *const *all = effect_catalogue(&count);
-    for (int e = 0; e < count; e++)
-        if (all[e]->engine == ENGINE_SHEET) return true;
-    return false;
-}
-
 static void read_key(script *s, const char *name, const place *p) {
     int value = lua_gettop(s->L), key = scene_key_find(name), e = effect_index(name), count;
     if (key >= 0) {
@@ -304,11 +322,6 @@ static void read_key(script *s, const char *name, const place *p) {
         }
     if (strcmp(name, "domain") == 0)
         read_domain(s, value, p);
-    else if (strcmp(name, "sheets") == 0)
-        problem_place(s, p,
-                      has_sheet_effects() ? "solids: scenes with sheets are not read yet"
-                                          : "solids: this version has no engine for sheets",
-                      "sheets", NULL);
     else
         report_unknown(s, p, name);
 }
@@ -338,6 +351,6 @@ void read_scene(lua_State *L, const char *file) {
     }
     lua_settop(L, table);
     place solids = place_key(&p, "solids");
-    if (s->scene->body_count == 0 && s->problem_count == 0)
-        problem_place(s, &solids, "at least one body", "none", NULL);
+    if (s->scene->body_count + s->scene->sheet_count == 0 && s->problem_count == 0)
+        problem_place(s, &solids, "at least one body, or sheets", "none", NULL);
 }

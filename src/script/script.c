@@ -55,6 +55,11 @@ static void place_validation(script *s, report *r) {
         snprintf(name, sizeof name, "body '%s'", s->scene->bodies[i].name);
         if (strstr(r->found, name)) p = s->body_places[i];
     }
+    for (int i = 0; i < s->scene->sheet_count; i++) {
+        char name[80];
+        snprintf(name, sizeof name, "sheet '%s'", s->scene->sheets[i].name);
+        if (strstr(r->found, name)) p = s->sheet_places[i];
+    }
     p = place_key(&p, r->key);
     r->line = place_line(s, &p);
 }
@@ -63,7 +68,9 @@ static void place_validation(script *s, report *r) {
 static void finish_loading(script *s) {
     report r;
     scene *sc = s->scene;
-    if (s->problem_count == 0 && sc->particles == 0 && sc->dx == 0) {
+    bool spaced = sc->sheet_count > 0;
+    for (int i = 0; i < sc->sheet_count; i++) spaced = spaced && sc->sheets[i].spacing > 0;
+    if (s->problem_count == 0 && sc->particles == 0 && sc->dx == 0 && !spaced) {
         place p = {
             .file = sc->file, .line = s->scene_line, .call = "scene", .depth = 1, .path = {{.key = "particles"}}};
         problem_place(s, &p, "particles = a number of particles (or a grid spacing dx)", "nothing", NULL);

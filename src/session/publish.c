@@ -97,15 +97,21 @@ static void fill_points(session *s, const double *position, const double *damage
     if (first) fill_bounds(p);
 }
 
+/* Colours run from 0 to 1: a quantity that exceeds 1 is shown over its largest value. */
+static void scale_colour(double *value, int64_t count) {
+    double most = 1;
+    for (int64_t i = 0; i < count; i++) most = value[i] > most ? value[i] : most;
+    for (int64_t i = 0; i < count && most > 1; i++) value[i] /= most;
+}
+
 status publish_frame(session *s, report *r) {
-    solid *state;
-    const solid_engine *engine = simulation_engine(s->simulation, &state);
     size_t n = (size_t)s->shown.particles;
     double *position = memory_allocate_array(n, 3 * sizeof *position), *damage = memory_allocate_array(n, sizeof *damage);
     status code = position && damage ? STATUS_OK : report_set(r, STATUS_SYSTEM, "out of memory for the picture");
     if (code == STATUS_OK) {
-        engine->read(state, "position", position);
-        bool damaged = engine->read(state, "damage", damage) > 0;
+        simulation_read(s->simulation, "position", position);
+        bool damaged = simulation_read(s->simulation, simulation_picture_field(s->simulation), damage) > 0;
+        if (damaged) scale_colour(damage, s->shown.particles);
         pthread_mutex_lock(&s->lock);
         session_snapshot *p = &s->shown;
         code = reserve_points(p, p->particles, r);

@@ -72,6 +72,13 @@ static void write_state(session *s, json_writer *w) {
     json_member_number(w, "max", sums->damage_max);
     json_member_number(w, "broken_fraction", sums->broken_fraction);
     json_object_end(w);
+    if (m->has_sheet) {
+        json_key(w, "bonds");
+        json_object(w);
+        json_member_integer(w, "total", m->sheet.bonds_total);
+        json_member_integer(w, "broken", m->sheet.bonds_broken);
+        json_object_end(w);
+    }
     json_key(w, "crack_normal");
     if (m->has_crack) {
         json_array(w);

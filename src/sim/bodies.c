@@ -24,7 +24,7 @@ static status choose_spacing(const scene *s, double volumes[SCENE_BODIES], body_
     return STATUS_OK;
 }
 
-static status allocate(body_particles *p, bool fibre1, bool fibre2, report *r) {
+static status allocate(body_particles *p, bool fibre1, bool fibre2, bool notched, report *r) {
     size_t n = (size_t)p->count, row_bytes = 3 * sizeof(double);
     p->position = memory_allocate_array(n, row_bytes);
     p->velocity = memory_allocate_array(n, row_bytes);
@@ -33,7 +33,9 @@ static status allocate(body_particles *p, bool fibre1, bool fibre2, report *r) {
     p->body = memory_allocate_array(n, 1);
     if (fibre1) p->fibre1 = memory_allocate_array(n, row_bytes);
     if (fibre2) p->fibre2 = memory_allocate_array(n, row_bytes);
-    if (p->position && p->velocity && p->volume && p->material && p->body && (!fibre1 || p->fibre1) && (!fibre2 || p->fibre2))
+    if (notched) p->damage = memory_allocate_array(n, sizeof(double));
+    if (p->position && p->velocity && p->volume && p->material && p->body && (!fibre1 || p->fibre1) && (!fibre2 || p->fibre2) &&
+        (!notched || p->damage))
         return STATUS_OK;
     bodies_free(p);
     return report_set(r, STATUS_SYSTEM, "out of memory for %lld particles", (long long)n);
@@ -50,6 +52,7 @@ void bodies_free(body_particles *p) {
     memory_free(p->fibre1, 3 * sizeof(double) * owners);
     memory_free(p->fibre2, 3 * sizeof(double) * owners);
     memory_free(p->corner, 4 * sizeof(int32_t) * (size_t)p->element_count);
+    memory_free(p->damage, n * sizeof(double));
     memset(p, 0, sizeof *p);
 }
 
@@ -77,6 +80,17 @@ status bodies_set_fibres(const scene *s, const scene_body *b, const double x[3],
     return STATUS_OK;
 }
 
+/* Breaks what lies in a body's notches. Notches that catch nothing would be silently no notches. */
+static status cut_notches(const scene *s, const scene_body *b, int64_t first, int64_t count, body_particles *p, report *r) {
+    int64_t caught = 0;
+    for (int64_t i = first; i < first + count; i++)
+        if (shape_distance(b->notches, p->position + 3 * i) < 0) p->damage[i] = 1, caught++;
+    if (caught > 0) return STATUS_OK;
+    char found[160];
+    snprintf(found, sizeof found, "none in body '%.48s' (the particles are %.3g apart)", b->name, p->spacing);
+    return report_input(r, s->file, 0, "notches", "shapes with some of the body's particles inside", found, NULL);
+}
+
 static status fill_body(const scene *s, int body, const point_set *points, double volume, int64_t first, body_particles *p, report *r) {
     const scene_body *b = &s->bodies[body];
     status code = STATUS_OK;
@@ -89,6 +103,7 @@ static status fill_body(const scene *s, int body, const point_set *points, doubl
         if (b->velocity.outputs) code = scene_function_evaluate(&b->velocity, p->position + 3 * i, 3, p->velocity + 3 * i, r);
         if (code == STATUS_OK && p->fibre1) code = bodies_set_fibres(s, b, p->position + 3 * i, p, i, r);
     }
+    if (code == STATUS_OK && b->notches) code = cut_notches(s, b, first, points->count, p, r);
     return code;
 }
 
@@ -103,14 +118,16 @@ status bodies_sample(const scene *s, body_particles *out, report *r) {
         return tetra_bodies_fill(s, out, r);
     }
     int families = 0;
+    bool notched = false;
     for (int b = 0; b < s->body_count && code == STATUS_OK; b++) {
         code = shape_sample(s->bodies[b].shape, s->bodies[b].sampling, out->spacing, s->seed, &points[b], r);
         out->count += points[b].count;
         families = s->bodies[b].fibres.families > families ? s->bodies[b].fibres.families : families;
+        notched = notched || s->bodies[b].notches;
     }
     if (code == STATUS_OK && out->count >= INT32_MAX / 2)
         code = report_input(r, s->file, 0, "particles", "fewer than 1e9 particles", "more", NULL);
-    if (code == STATUS_OK) code = allocate(out, families > 0, families > 1, r);
+    if (code == STATUS_OK) code = allocate(out, families > 0, families > 1, notched, r);
     else out->count = 0;
     int64_t first = 0;
     for (int b = 0; b < s->body_count; b++) {

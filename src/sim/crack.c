@@ -27,8 +27,9 @@ static void bounds(const double *rest, int64_t count, cell_grid *g) {
     }
 }
 
-static void average(cell_grid *g, const double *rest, const double *damage, int64_t count) {
+static void average(cell_grid *g, const double *rest, const double *damage, const double *notched, int64_t count) {
     for (int64_t i = 0; i < count; i++) {
+        if (notched && notched[i] > 0) continue;
         int64_t cell = 0;
         for (int c = 0; c < 3; c++) cell = cell * g->size[c] + (int64_t)((rest[3 * i + c] - g->low[c]) / g->spacing);
         g->sum[cell] += damage[i];
@@ -71,11 +72,11 @@ static bool principal(const cell_grid *g, bool thin, double normal[3]) {
     return true;
 }
 
-status crack_normal(const double *rest, const double *damage, int64_t count, double spacing, double normal[3], bool *found,
-                    report *r) {
+status crack_normal(const double *rest, const double *damage, const double *notched, int64_t count, double spacing, double normal[3],
+                    bool *found, report *r) {
     memset(normal, 0, 3 * sizeof *normal);
     *found = false;
-    for (int64_t i = 0; i < count && !*found; i++) *found = damage[i] > 0.5;
+    for (int64_t i = 0; i < count && !*found; i++) *found = damage[i] > 0.5 && !(notched && notched[i] > 0);
     if (!*found) return STATUS_OK;
     cell_grid g = {.spacing = spacing};
     bounds(rest, count, &g);
@@ -84,7 +85,7 @@ status crack_normal(const double *rest, const double *damage, int64_t count, dou
     g.weight = memory_allocate(bytes);
     status code = STATUS_OK;
     if (g.sum && g.weight) {
-        average(&g, rest, damage, count);
+        average(&g, rest, damage, notched, count);
         *found = principal(&g, false, normal) || principal(&g, true, normal);
     } else {
         code = report_set(r, STATUS_SYSTEM, "out of memory for the crack measure");

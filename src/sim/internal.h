@@ -3,12 +3,18 @@
 #define SUNDER_SIM_INTERNAL_H
 
 #include "sim/bodies.h"
+#include "sim/sheets.h"
 #include "sim/simulation.h"
 
+/* A scene has solids or sheets. */
 struct simulation {
     const scene *scene;
     const solid_engine *engine;
-    solid *solid;
+    solid *solid; /* or, in a scene of sheets, NULL */
+    const sheet_engine *sheets;
+    sheet *sheet; /* or NULL */
+    sheet_particles sheet_points; /* stay: the engine borrows rest places and sources */
+    int64_t count;
     body_particles particles; /* rest positions and bodies stay for measures; the rest is freed after loading */
     solid_material materials[SOLID_MATERIALS];
     simulation_plan plan;
@@ -20,5 +26,20 @@ struct simulation {
     bool warned_fixed, warned_damage;
     char warning[256];
 };
+
+/* engines.c: the two engines behind one face */
+rigid_boundary *engine_boundaries(const simulation *s);
+/* By index in the catalogue, the scene's cfl included. */
+void engine_limits(const simulation *s, double limit[EFFECT_LIMIT]);
+status engine_step(simulation *s, double dt, report *r);
+status engine_begin_frame(simulation *s, report *r);
+void engine_end_frame(simulation *s);
+double engine_bytes(const simulation *s);
+status engine_save(const simulation *s, record_list *list, report *r);
+status engine_restore(simulation *s, const record_list *list, report *r);
+status engine_measure(const simulation *s, simulation_measures *m, report *r);
+int engine_define_boundaries(const scene *s, rigid_boundary *out);
+/* From sampled sheets; sets the plan's mask. */
+status engine_create_sheet(simulation *s, int threads, report *r);
 
 #endif

@@ -1,17 +1,29 @@
 #include "sim/scene.h"
 
-#include "base/names.h"
+#include "sheet/sheet.h"
 #include "solid/moduli.h"
 #include "solid/solid.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 const effect *const *effect_catalogue(int *count) {
-    const solid_engine *engine = solid_engine_find(64, "plain");
-    *count = engine->effect_count;
-    return engine->effects;
+    static const effect *all[EFFECT_LIMIT];
+    const solid_engine *solids = solid_engine_find(64, "plain");
+    const sheet_engine *sheets = sheet_engine_find(64, "plain");
+    *count = solids->effect_count + sheets->effect_count;
+    assert(*count <= EFFECT_LIMIT);
+    if (!all[0]) { /* the last written first: a reader on another thread sees a whole table */
+        for (int e = sheets->effect_count - 1; e >= 0; e--) all[solids->effect_count + e] = sheets->effects[e];
+        for (int e = solids->effect_count - 1; e >= 0; e--) all[e] = solids->effects[e];
+    }
+    return all;
+}
+
+int sheet_effects_first(void) {
+    return solid_engine_find(64, "plain")->effect_count;
 }
 
 int effect_index(const char *name) {
@@ -103,7 +115,26 @@ static status check_needs(const scene_material *m, const effect *const *effects,
     return STATUS_OK;
 }
 
-static status check_material(scene_material *m, report *r) {
+/* A material serves the bodies that use it: it has their engine's elasticity, and no effect of the other engine. */
+static status check_engine(const scene_material *m, engine_kind engine, const char *need, report *r) {
+    int count;
+    const effect *const *effects = effect_catalogue(&count);
+    for (int e = 0; e < count; e++) {
+        if (!m->effects[e].on || effects[e]->engine == engine) continue;
+        char expected[128], found[128];
+        snprintf(expected, sizeof expected, "an effect of %s", engine == ENGINE_SHEET ? "sheets" : "solids");
+        snprintf(found, sizeof found, "'%s', which belongs to %s", effects[e]->name, engine == ENGINE_SHEET ? "solids" : "sheets");
+        return report_input(r, m->file, m->line, effects[e]->name, expected, found, NULL);
+    }
+    int supplier = find_supplier(m, need, 0);
+    if (supplier >= 0) return STATUS_OK;
+    char suppliers[160], expected[224];
+    describe_suppliers(need, suppliers, sizeof suppliers);
+    snprintf(expected, sizeof expected, "a material with elasticity: %s", suppliers);
+    return report_input(r, m->file, m->line, engine == ENGINE_SHEET ? "linear" : "elastic", expected, "none", NULL);
+}
+
+static status check_material(const scene *s, int index, scene_material *m, report *r) {
     int count;
     const effect *const *effects = effect_catalogue(&count);
     if (!(m->density > 0) || !isfinite(m->density)) {
@@ -116,11 +147,11 @@ static status check_material(scene_material *m, report *r) {
     for (int e = 0; e < count && code == STATUS_OK; e++)
         if (m->effects[e].on && effects[e]->scope == SCOPE_MATERIAL)
             code = effect_values_check(effects[e], &m->effects[e], m->effects, m->file, m->line, r);
-    if (code != STATUS_OK || find_supplier(m, ELASTICITY, 0) >= 0) return code;
-    char suppliers[96], expected[128];
-    describe_suppliers(ELASTICITY, suppliers, sizeof suppliers);
-    snprintf(expected, sizeof expected, "a material with elasticity: %s", suppliers);
-    return report_input(r, m->file, m->line, "elastic", expected, "none", NULL);
+    for (int b = 0; b < s->body_count && code == STATUS_OK; b++)
+        if (s->bodies[b].material == index) code = check_engine(m, ENGINE_SOLID, ELASTICITY, r);
+    for (int b = 0; b < s->sheet_count && code == STATUS_OK; b++)
+        if (s->sheets[b].material == index) code = check_engine(m, ENGINE_SHEET, SHEET_ELASTICITY, r);
+    return code;
 }
 
 /* Damage that follows fibres, and fibres themselves, need directions. */
@@ -156,12 +187,23 @@ static status check_discretisation(const scene *s, const scene_body *b, report *
     if (!tetrahedra && b->start.outputs)
         return report_input(r, s->file, 0, "start", "discretisation = \"tetrahedra\" beside it (particles start at rest)", "particles", NULL);
     for (int e = 0; e < count && tetrahedra; e++) {
-        if (!m->effects[e].on || solid_tetra_find(64, "plain")->knows(effects[e])) continue;
+        if (!m->effects[e].on || effects[e]->engine != ENGINE_SOLID || solid_tetra_find(64, "plain")->knows(effects[e])) continue;
         char found[128];
         snprintf(found, sizeof found, "'%s' in the body '%.60s'", effects[e]->name, b->name);
         return report_input(r, m->file, m->line, effects[e]->name, "an effect that tetrahedra know: elastic, corotated, fibres", found, NULL);
     }
     return STATUS_OK;
+}
+
+/* What starts broken must be able to break. */
+static status check_notches(const scene *s, const scene_body *b, report *r) {
+    const scene_material *m = &s->materials[b->material];
+    if (!b->notches || find_supplier(m, "damage model", 0) >= 0) return STATUS_OK;
+    char suppliers[96], expected[160], found[160];
+    describe_suppliers("damage model", suppliers, sizeof suppliers);
+    snprintf(expected, sizeof expected, "a material that can break: %s", suppliers);
+    snprintf(found, sizeof found, "notches in body '%.48s', whose material '%.48s' cannot", b->name, m->name);
+    return report_input(r, s->file, 0, "notches", expected, found, NULL);
 }
 
 static status check_body(const scene *s, const scene_body *b, report *r) {
@@ -174,7 +216,25 @@ static status check_body(const scene *s, const scene_body *b, report *r) {
     if (b->material < 0 || b->material >= s->material_count)
         return report_input(r, s->file, 0, "material", "a material", "nothing", NULL);
     status code = check_discretisation(s, b, r);
-    return code == STATUS_OK ? check_fibres(s, b, r) : code;
+    if (code == STATUS_OK) code = check_fibres(s, b, r);
+    return code == STATUS_OK ? check_notches(s, b, r) : code;
+}
+
+static status check_sheet(const scene *s, const scene_sheet *b, report *r) {
+    if (!b->region.shape) return report_input(r, s->file, 0, "shape", "a shape", "nothing", NULL);
+    if (b->material < 0 || b->material >= s->material_count) return report_input(r, s->file, 0, "material", "a material", "nothing", NULL);
+    const scene_material *m = &s->materials[b->material];
+    if (m->effects[effect_index("grain")].on && b->grain.families < 1) {
+        char found[160];
+        snprintf(found, sizeof found, "none in sheet '%.48s', whose material '%.48s' has a grain", b->name, m->name);
+        return report_input(r, s->file, 0, "grain", "a direction", found, NULL);
+    }
+    if (b->source_count > 0 && !m->effects[effect_index("diffusion")].on) {
+        char found[160];
+        snprintf(found, sizeof found, "sources in sheet '%.48s', whose material '%.48s' has none", b->name, m->name);
+        return report_input(r, s->file, 0, "sources", "a material with diffusion = { … }", found, NULL);
+    }
+    return STATUS_OK;
 }
 
 static status check_numbers(const scene *s, report *r) {
@@ -198,10 +258,15 @@ static status check_numbers(const scene *s, report *r) {
 }
 
 status scene_validate(scene *s, report *r) {
-    if (s->body_count == 0) return report_input(r, s->file, 0, "solids", "at least one body", "none", NULL);
+    if (s->body_count + s->sheet_count == 0) return report_input(r, s->file, 0, "solids", "at least one body", "none", NULL);
+    if (s->body_count > 0 && s->sheet_count > 0)
+        return report_input(r, s->file, 0, "sheets", "solids or sheets: they cannot touch one another yet, so one scene holds one kind", "both", NULL);
     status code = check_numbers(s, r);
-    for (int i = 0; i < s->material_count && code == STATUS_OK; i++) code = check_material(&s->materials[i], r);
+    for (int i = 0; i < s->material_count && code == STATUS_OK; i++) code = check_material(s, i, &s->materials[i], r);
     for (int i = 0; i < s->body_count && code == STATUS_OK; i++) code = check_body(s, &s->bodies[i], r);
+    for (int i = 0; i < s->sheet_count && code == STATUS_OK; i++) code = check_sheet(s, &s->sheets[i], r);
+    if (code == STATUS_OK && s->sheet_count > 0 && s->effects[effect_index("mass_damping")].on)
+        code = report_input(r, s->file, 0, "mass_damping", "damping = … in the sheet's material", "mass_damping, which is for solids", NULL);
     if (code != STATUS_OK) return code;
     s->effects[effect_index("boundary")].on = s->grip_count + s->collider_count > 0;
     return STATUS_OK;

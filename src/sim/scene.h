@@ -7,12 +7,15 @@
 
 #include "effect/effect.h"
 #include "effect/kinds.h"
+#include "geom/rigid.h"
 #include "geom/sampling.h"
+#include "geom/sampling_sheet.h"
 #include "geom/shape.h"
 
 #include <stdint.h>
 
-enum { SCENE_MATERIALS = 16, SCENE_BODIES = 32, SCENE_GRIPS = 32, SCENE_COLLIDERS = 32, SCENE_PARAMETERS = 512 };
+enum { SCENE_MATERIALS = 16, SCENE_BODIES = 32, SCENE_GRIPS = 32, SCENE_COLLIDERS = 32, SCENE_NOTCHES = 64, SCENE_PARAMETERS = 512 };
+enum { SCENE_SHEETS = 16, SHEET_CUTS = 16, SHEET_FEEDS = 16 }; /* sheets; notches and sources of each */
 
 /* A constant, or a function of `inputs` reals (time, or x y z) giving `outputs` reals. */
 typedef struct scene_function {
@@ -46,12 +49,45 @@ typedef struct scene_body {
     sampling_kind sampling;
     scene_fibres fibres;
     scene_function velocity; /* of place: initial velocity, 3 outputs; absent means at rest */
+    const shape *notches;    /* particles inside start broken; NULL: none */
     discretisation_kind discretisation;
     mesher_kind mesher;
     scene_function start;    /* of place at rest: where a vertex is at time 0, 3 outputs; tetrahedra only; absent means there */
 } scene_body;
 
-/* Grips take hold of grid nodes inside a moving region and prescribe their velocity. */
+/* A cut that a sheet has from the start: a thin shape, or the straight line from … to. */
+typedef struct scene_notch {
+    const shape *shape; /* or NULL */
+    double from[3], to[3];
+} scene_notch;
+
+/* Feeds what diffuses in a sheet. */
+typedef struct scene_source {
+    const shape *shape;   /* where; NULL: everywhere, or at the spots */
+    int spots;            /* how many round spots at random places, 0: none */
+    double radius;        /* of a spot */
+    scene_function value; /* of place, 1 output: a rate, or the value that is held */
+    bool fixed;           /* hold the value instead of adding it */
+    double start, stop;   /* on while start ≤ t < stop; stop may be HUGE_VAL */
+} scene_source;
+
+typedef struct scene_sheet {
+    char name[64];
+    sheet_region region;
+    int material;
+    double thickness;
+    double spacing;       /* of particles, 0: from the scene's dx or particles */
+    double radius;        /* bonds reach this many spacings */
+    double ripple;        /* random places out of the plane at the start, up to this many spacings */
+    sheet_sampling lattice;
+    scene_fibres grain;
+    scene_function velocity;
+    int notch_count, source_count;
+    scene_notch notches[SHEET_CUTS];
+    scene_source sources[SHEET_FEEDS];
+} scene_sheet;
+
+/* Grips take hold of grid nodes inside a moving region, or of a sheet's particles that are inside when they start, and prescribe their velocity. */
 typedef struct scene_grip {
     char name[64];
     const shape *shape;        /* at time 0 */
@@ -101,9 +137,10 @@ typedef struct scene {
     kernel_kind kernel, laplacian;
 
     effect_values effects[EFFECT_LIMIT]; /* SCOPE_SCENE effects, by index in effect_catalogue() */
-    int material_count, body_count, grip_count, collider_count, parameter_count;
+    int material_count, body_count, sheet_count, grip_count, collider_count, parameter_count;
     scene_material materials[SCENE_MATERIALS];
     scene_body bodies[SCENE_BODIES];
+    scene_sheet sheets[SCENE_SHEETS];
     scene_grip grips[SCENE_GRIPS];
     scene_collider colliders[SCENE_COLLIDERS];
     scene_parameter parameters[SCENE_PARAMETERS];
@@ -123,8 +160,12 @@ bool scene_is_tetrahedra(const scene *s);
 /* The number of frames after the initial one: duration × fps, rounded. */
 int64_t scene_frames(const scene *s);
 
-/* All effects of both engines, metadata only (the tables' `stages` are those of the plain f64 build). */
+/* All effects of both engines, the solid engine's first, metadata only (the tables' stages are those of the plain f64 build).
+ * Effects of the scene itself, gravity and boundaries, stand once, among the solid engine's, and hold for both. */
 const effect *const *effect_catalogue(int *count);
+
+/* Where the sheet engine's effects begin in the catalogue. */
+int sheet_effects_first(void);
 
 /* The index of an effect by name in the catalogue, or -1. */
 int effect_index(const char *name);

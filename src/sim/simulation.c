@@ -12,24 +12,6 @@
 /* A frame that needs more steps than this will never end. */
 static const double STEPS_LIMIT = 5e6;
 
-static void motion_default(rigid_motion *m, const double pivot[3]) {
-    *m = (rigid_motion){.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-    memcpy(m->pivot, pivot, sizeof m->pivot);
-}
-
-static void define_boundaries(const scene *s, solid_definition *d) {
-    for (int g = 0; g < s->grip_count; g++) {
-        solid_boundary *b = &d->boundaries[d->boundary_count++];
-        *b = (solid_boundary){.shape = s->grips[g].shape, .grip = true};
-        motion_default(&b->motion, s->grips[g].pivot);
-    }
-    for (int c = 0; c < s->collider_count; c++) {
-        solid_boundary *b = &d->boundaries[d->boundary_count++];
-        *b = (solid_boundary){.shape = s->colliders[c].shape, .contact = s->colliders[c].contact, .friction = s->colliders[c].friction};
-        motion_default(&b->motion, s->colliders[c].pivot);
-    }
-}
-
 /* Materials twice: as they are, and again for the particles that a grip protects from damage. */
 static void define_materials(simulation *s, solid_definition *d) {
     const scene *from_scene = s->scene;
@@ -50,60 +32,60 @@ static void define(simulation *s, int threads, solid_definition *d) {
                             .transfer_ratio = from_scene->transfer_ratio, .kernel = from_scene->kernel, .laplacian = from_scene->laplacian,
                             .count = s->particles.count, .position = s->particles.position, .velocity = s->particles.velocity,
                             .volume = s->particles.volume, .fibre1 = s->particles.fibre1, .fibre2 = s->particles.fibre2,
-                            .material = s->particles.material, .element_count = s->particles.element_count, .corner = s->particles.corner,
-                            .start = s->particles.start};
-    int gravity = effect_index("gravity"), damping = effect_index("damping");
+                            .damage = s->particles.damage, .material = s->particles.material, .element_count = s->particles.element_count,
+                            .corner = s->particles.corner, .start = s->particles.start};
+    int gravity = effect_index("gravity"), damping = effect_index("mass_damping");
     if (from_scene->effects[gravity].on) memcpy(d->gravity, from_scene->effects[gravity].value[0], sizeof d->gravity);
     if (from_scene->effects[damping].on) d->damping = from_scene->effects[damping].value[0][0];
     define_materials(s, d);
-    define_boundaries(s->scene, d);
+    d->boundary_count = engine_define_boundaries(s->scene, d->boundaries);
 }
 
-/* The momentum limit shrinks by the scene's cfl; others are limits as they stand. */
 static double smallest_limit(const simulation *s, double limits[EFFECT_LIMIT], int *which) {
     double least = HUGE_VAL;
-    s->engine->limits(s->solid, limits);
+    engine_limits(s, limits);
     *which = -1;
-    for (int e = 0; e < s->engine->effect_count; e++) {
-        if (strcmp(s->engine->effects[e]->name, "elastic") == 0) limits[e] *= s->scene->cfl;
+    for (int e = 0; e < s->plan.effect_count; e++)
         if (limits[e] < least) least = limits[e], *which = e;
-    }
     return least;
 }
 
-static void make_plan(simulation *s, const solid_definition *d) {
+static void add_plan_field(simulation *s, const char *name, const char *from) {
     simulation_plan *p = &s->plan;
-    *p = (simulation_plan){.effect_count = s->engine->effect_count, .effects = s->engine->effects, .mask = d->effect_mask,
-                           .dx = d->dx, .spacing = s->particles.spacing, .particles = d->count, .tetrahedra = d->element_count, .threads = d->threads,
-                           .precision = s->engine->precision, .simd = s->engine->simd};
-    static const char *const built_in[] = {"position", "velocity", "affine_velocity", "deformation_gradient", "volume"};
-    int size = s->engine->precision / 8;
-    for (size_t i = 0; i < sizeof built_in / sizeof *built_in; i++) {
-        if (s->engine->components(s->solid, built_in[i]) == 0) continue;
-        plan_field *f = &p->fields[p->field_count++];
-        snprintf(f->name, sizeof f->name, "%s", built_in[i]);
-        snprintf(f->effect, sizeof f->effect, "transfer");
-        f->bytes = s->engine->components(s->solid, built_in[i]) * size;
-    }
+    int components = simulation_read(s, name, NULL);
+    bool known = components == 0 || p->field_count == sizeof p->fields / sizeof *p->fields;
+    for (int k = 0; k < p->field_count; k++) known |= strcmp(p->fields[k].name, name) == 0;
+    if (known) return;
+    plan_field *f = &p->fields[p->field_count++];
+    snprintf(f->name, sizeof f->name, "%s", name);
+    snprintf(f->effect, sizeof f->effect, "%s", from);
+    f->bytes = components * p->precision / 8;
+}
+
+/* `mask` by index in the catalogue. */
+static void make_plan(simulation *s, uint32_t mask, int threads) {
+    simulation_plan *p = &s->plan;
+    const scene *from = s->scene;
+    p->mask = mask;
+    p->particles = s->count;
+    p->tetrahedra = s->particles.element_count;
+    p->threads = threads;
+    p->spacing = s->sheet ? s->sheet_points.spacing : s->particles.spacing;
+    p->dx = s->sheet ? s->sheet_points.spacing : s->particles.dx;
+    p->precision = s->engine->precision;
+    p->simd = s->engine->simd;
+    static const char *const of_solids[] = {"position", "velocity", "affine_velocity", "deformation_gradient", "volume"};
+    static const char *const of_sheets[] = {"position", "velocity", "area"};
+    for (size_t i = 0; i < (s->sheet ? 3u : 5u); i++) add_plan_field(s, s->sheet ? of_sheets[i] : of_solids[i], s->sheet ? "particles" : "transfer");
     for (int e = 0; e < p->effect_count; e++)
-        for (int i = 0; (p->mask >> e & 1) && i < p->effects[e]->field_count; i++) {
-            const effect_field *from = &p->effects[e]->fields[i];
-            int components = s->engine->components(s->solid, from->key);
-            bool known = components == 0;
-            for (int k = 0; k < p->field_count; k++) known |= strcmp(p->fields[k].name, from->key) == 0;
-            if (known) continue;
-            plan_field *f = &p->fields[p->field_count++];
-            snprintf(f->name, sizeof f->name, "%s", from->key);
-            snprintf(f->effect, sizeof f->effect, "%s", p->effects[e]->name);
-            f->bytes = components * size;
-        }
-    p->bytes_per_particle = s->engine->bytes_per_particle(s->solid);
+        for (int i = 0; (p->mask >> e & 1) && i < p->effects[e]->field_count; i++) add_plan_field(s, p->effects[e]->fields[i].key, p->effects[e]->name);
+    p->bytes_per_particle = engine_bytes(s);
     int which;
-    double least = smallest_limit(s, p->limits, &which), wanted = s->scene->dt > 0 ? s->scene->dt : least;
+    double least = smallest_limit(s, p->limits, &which), wanted = from->dt > 0 ? from->dt : least;
     p->dt = s->frame_time / ceil(s->frame_time / wanted - 1e-9);
 }
 
-/* The engine has copied what it needs; rest positions and bodies stay for the measures. */
+/* The engine has copied what it needs; rest positions, bodies and notches stay for the measures. */
 static void drop_loading_arrays(body_particles *p) {
     size_t n = (size_t)p->count, owners = p->element_count ? (size_t)p->element_count : n, row_bytes = 3 * sizeof(double) * n;
     memory_free(p->velocity, row_bytes);
@@ -116,6 +98,35 @@ static void drop_loading_arrays(body_particles *p) {
     p->material = NULL;
 }
 
+static status create_solid(simulation *s, int threads, report *r) {
+    solid_definition *d = memory_allocate(sizeof *d);
+    status code = d ? bodies_sample(s->scene, &s->particles, r) : report_set(r, STATUS_SYSTEM, "out of memory for the plan");
+    if (code == STATUS_OK) {
+        define(s, threads, d);
+        s->solid = s->engine->create(d, r);
+        code = s->solid ? STATUS_OK : r->code;
+    }
+    s->count = s->particles.count;
+    if (code == STATUS_OK) {
+        make_plan(s, d->effect_mask, threads);
+        drop_loading_arrays(&s->particles);
+    }
+    memory_free(d, sizeof *d);
+    return code;
+}
+
+static status create_sheet(simulation *s, int threads, report *r) {
+    status code = sheets_sample(s->scene, &s->sheet_points, r);
+    s->count = s->sheet_points.count;
+    if (code == STATUS_OK) code = engine_create_sheet(s, threads, r);
+    if (code != STATUS_OK) return code;
+    uint32_t mask = s->plan.mask;
+    for (int e = 0; e < sheet_effects_first(); e++)
+        if (s->scene->effects[e].on && s->plan.effects[e]->scope == SCOPE_SCENE) mask |= 1u << e;
+    make_plan(s, mask, threads);
+    return STATUS_OK;
+}
+
 status simulation_create(const scene *definition, const simulation_options *options, simulation **out, report *r) {
     *out = NULL;
     const solid_engine *engine = (scene_is_tetrahedra(definition) ? solid_tetra_find : solid_engine_find)(options->precision, options->simd);
@@ -125,20 +136,13 @@ status simulation_create(const scene *definition, const simulation_options *opti
     if (!s) return report_set(r, STATUS_SYSTEM, "out of memory for the simulation");
     s->scene = definition;
     s->engine = engine;
+    s->sheets = sheet_engine_find(options->precision, engine->simd);
     s->frame_time = 1 / definition->fps;
     s->dt_min = HUGE_VAL;
-    solid_definition *d = memory_allocate(sizeof *d);
-    status code = d ? bodies_sample(definition, &s->particles, r) : report_set(r, STATUS_SYSTEM, "out of memory for the plan");
-    if (code == STATUS_OK) {
-        define(s, options->threads > 0 ? options->threads : processor_count(), d);
-        s->solid = engine->create(d, r);
-        code = s->solid ? STATUS_OK : r->code;
-    }
-    if (code == STATUS_OK) {
-        make_plan(s, d);
-        drop_loading_arrays(&s->particles);
-    }
-    memory_free(d, sizeof *d);
+    s->plan.effects = effect_catalogue(&s->plan.effect_count);
+    s->plan.sheet = definition->sheet_count > 0;
+    int threads = options->threads > 0 ? options->threads : processor_count();
+    status code = s->plan.sheet ? create_sheet(s, threads, r) : create_solid(s, threads, r);
     if (code != STATUS_OK) {
         simulation_destroy(s);
         return code;
@@ -150,6 +154,8 @@ status simulation_create(const scene *definition, const simulation_options *opti
 void simulation_destroy(simulation *s) {
     if (!s) return;
     if (s->solid) s->engine->destroy(s->solid);
+    if (s->sheet) s->sheets->destroy(s->sheet);
+    sheets_free(&s->sheet_points);
     bodies_free(&s->particles);
     memory_free(s, sizeof *s);
 }
@@ -159,8 +165,16 @@ const simulation_plan *simulation_get_plan(const simulation *s) {
 }
 
 int simulation_stages(const simulation_plan *plan, char (*text)[48], int limit) {
-    const solid_engine *engine = (plan->tetrahedra ? solid_tetra_find : solid_engine_find)(plan->precision, plan->simd);
-    return engine->stages(plan->mask, text, limit);
+    if (!plan->sheet) return (plan->tetrahedra ? solid_tetra_find : solid_engine_find)(plan->precision, plan->simd)->stages(plan->mask, text, limit);
+    char own[32][48];
+    int count = 0, stages = sheet_engine_find(plan->precision, plan->simd)->stages(plan->mask >> sheet_effects_first(), own, 32);
+    for (int i = 0; i < stages && count < limit; i++) {
+        memcpy(text[count++], own[i], sizeof own[i]);
+        /* The scene's own effects, which both engines share, act where particles advance. */
+        for (int e = 0; e < sheet_effects_first() && strcmp(own[i], "advance") == 0; e++)
+            if ((plan->mask >> e & 1) && count < limit) snprintf(text[count++], sizeof text[0], "%s.advance", plan->effects[e]->name);
+    }
+    return count;
 }
 
 /* ---- stepping ---------------------------------------------------------------------------------------------------- */
@@ -182,7 +196,7 @@ static boundary_source source_of(const scene *s, int i) {
 
 /* Velocities in the middle of the step: positions of the boundaries are then second order in Δt. */
 static status drive_boundaries(simulation *s, double dt, report *r) {
-    solid_boundary *boundaries = s->engine->boundaries(s->solid);
+    rigid_boundary *boundaries = engine_boundaries(s);
     double middle = s->time + 0.5 * dt;
     for (int i = 0; i < s->scene->grip_count + s->scene->collider_count; i++) {
         boundary_source from = source_of(s->scene, i);
@@ -197,7 +211,7 @@ static status drive_boundaries(simulation *s, double dt, report *r) {
 }
 
 static void advance_boundaries(simulation *s, double dt) {
-    solid_boundary *boundaries = s->engine->boundaries(s->solid);
+    rigid_boundary *boundaries = engine_boundaries(s);
     for (int i = 0; i < s->scene->grip_count + s->scene->collider_count; i++)
         if (boundaries[i].motion.active) rigid_motion_advance(&boundaries[i].motion, dt);
 }
@@ -205,8 +219,7 @@ static void advance_boundaries(simulation *s, double dt) {
 static status one_step(simulation *s, double dt, report *r) {
     status code = drive_boundaries(s, dt, r);
     if (code != STATUS_OK) return code;
-    solid_fault fault;
-    code = s->engine->step(s->solid, dt, &fault, r);
+    code = engine_step(s, dt, r);
     if (code == STATUS_DIVERGED) {
         char text[sizeof r->message];
         snprintf(text, sizeof text, "step %lld, t = %.6g, frame %lld: %.400s", (long long)s->steps + 1, s->time, (long long)s->frame + 1,
@@ -224,13 +237,13 @@ static status one_step(simulation *s, double dt, report *r) {
 
 /* Says once what a user would want to know of the time step. */
 static void warn_of_limits(simulation *s, double dt, const double limits[EFFECT_LIMIT], int which, double least) {
-    const char *name = which >= 0 ? s->engine->effects[which]->name : "";
+    const char *name = which >= 0 ? s->plan.effects[which]->name : "";
     if (s->scene->dt > 0 && dt > least * (1 + 1e-9) && !s->warned_fixed) {
         s->warned_fixed = true;
         snprintf(s->warning, sizeof s->warning, "dt %.4g exceeds the limit %.4g of the effect '%s' at t = %.4g", dt, least, name, s->time);
     }
     int momentum = effect_index("elastic"), damage = effect_index("damage");
-    if (!s->warned_damage && limits[damage] < 0.05 * limits[momentum]) {
+    if (!s->sheet && !s->warned_damage && limits[damage] < 0.05 * limits[momentum]) {
         s->warned_damage = true;
         snprintf(s->warning, sizeof s->warning,
                  "explicit damage limits the step to %.3g, %.0f times under the momentum's %.3g: a larger eta, or damage in its implicit form, is faster",
@@ -252,7 +265,7 @@ static status choose_step(simulation *s, double left, int64_t *steps_left, doubl
     }
     double needed = ceil(left / least - 1e-9);
     if (!(needed <= STEPS_LIMIT)) {
-        const char *name = which >= 0 ? s->engine->effects[which]->name : "?";
+        const char *name = which >= 0 ? s->plan.effects[which]->name : "?";
         bool damage = strcmp(name, "damage") == 0;
         return report_set(r, STATUS_DIVERGED, "step %lld, t = %.6g: the effect '%s' limits the time step to %.3g, %.3g steps for the rest of the frame%s",
                           (long long)s->steps + 1, s->time, name, least, needed,
@@ -272,7 +285,7 @@ status simulation_step(simulation *s, double dt, report *r) {
 }
 
 status simulation_advance(simulation *s, const atomic_int *abandon, report *r) {
-    status code = s->engine->sort(s->solid, r);
+    status code = engine_begin_frame(s, r);
     if (code != STATUS_OK) return code;
     double end = (double)(s->frame + 1) * s->frame_time, dt;
     int64_t steps_left = 0;
@@ -284,6 +297,7 @@ status simulation_advance(simulation *s, const atomic_int *abandon, report *r) {
     } while (--steps_left > 0);
     s->frame++;
     s->time = end; /* frames sit at exact multiples, not at sums of steps */
+    engine_end_frame(s);
     return STATUS_OK;
 }
 
@@ -307,7 +321,7 @@ const char *simulation_take_warning(simulation *s) {
 }
 
 const uint8_t *simulation_bodies(const simulation *s) {
-    return s->particles.body;
+    return s->sheet ? s->sheet_points.sheet : s->particles.body;
 }
 
 const solid_engine *simulation_engine(const simulation *s, solid **state) {
@@ -315,23 +329,28 @@ const solid_engine *simulation_engine(const simulation *s, solid **state) {
     return s->engine;
 }
 
+const sheet_engine *simulation_sheet_engine(const simulation *s, sheet **state) {
+    *state = s->sheet;
+    return s->sheet ? s->sheets : NULL;
+}
+
 /* ---- measures ---------------------------------------------------------------------------------------------------- */
 
 static status measure_crack(simulation *s, simulation_measures *m, report *r) {
-    if (m->solid.damage_max <= 0.5) return STATUS_OK;
+    if (s->sheet || m->solid.damage_max <= 0.5) return STATUS_OK;
     size_t bytes = (size_t)s->particles.count * sizeof(double);
     double *damage = memory_allocate(bytes);
     if (!damage) return report_set(r, STATUS_SYSTEM, "out of memory for the crack measure");
     status code = STATUS_OK;
     if (s->engine->read(s->solid, "damage", damage))
-        code = crack_normal(s->particles.position, damage, s->particles.count, 1.3 * s->plan.dx, m->crack_normal, &m->has_crack, r);
+        code = crack_normal(s->particles.position, damage, s->particles.damage, s->particles.count, 1.3 * s->plan.dx, m->crack_normal, &m->has_crack, r);
     memory_free(damage, bytes);
     return code;
 }
 
 status simulation_measure(simulation *s, simulation_measures *m, report *r) {
     *m = (simulation_measures){.dt_min = s->steps ? s->dt_min : 0, .dt_max = s->dt_max, .time = s->time, .frame = s->frame, .steps = s->steps};
-    status code = s->engine->measure(s->solid, &m->solid, r);
+    status code = engine_measure(s, m, r);
     if (code != STATUS_OK) return code;
     double stored = m->solid.kinetic + m->solid.elastic + m->solid.fibre + m->solid.gravitational;
     if (!s->has_initial_energy) {

@@ -4,6 +4,7 @@
 
 #include "base/record.h"
 #include "sim/scene.h"
+#include "sheet/sheet.h"
 #include "solid/solid.h"
 
 #include <stdatomic.h>
@@ -24,7 +25,8 @@ typedef struct plan_field {
 
 typedef struct simulation_plan {
     int effect_count;
-    const effect *const *effects; /* [effect_count], the engine's tables */
+    const effect *const *effects; /* [effect_count], the catalogue */
+    bool sheet;                   /* the scene is one of sheets */
     uint32_t mask;                /* on */
     int field_count;
     plan_field fields[16];
@@ -39,7 +41,9 @@ typedef struct simulation_plan {
 } simulation_plan;
 
 typedef struct simulation_measures {
-    solid_measures solid;
+    solid_measures solid; /* of sheets: what they have in common with solids, bonds standing for damage */
+    bool has_sheet;
+    sheet_measures sheet;
     double dissipated;   /* energy that has left the balance since the start */
     bool has_crack;      /* some damage is above 0.5 */
     double crack_normal[3];
@@ -70,7 +74,8 @@ int64_t simulation_steps(const simulation *s);
 /* Measures of the state at a frame's end. Errors: out of memory. */
 status simulation_measure(simulation *s, simulation_measures *m, report *r);
 
-/* A frame's arrays in order of id: "solid/position" … in the run's precision. The caller clears the list. */
+/* A frame's arrays in order of id: "solid/position" … or "sheet/position" … in the run's precision; in frame 0 the sheet's bonds too. The caller
+ * clears the list. */
 status simulation_frame_records(const simulation *s, record_list *list, report *r);
 
 /* Everything needed to go on with the same bits, and back. */
@@ -86,7 +91,16 @@ const char *simulation_take_warning(simulation *s);
 /* Which body each particle belongs to, [particles] by id; owned by the simulation. */
 const uint8_t *simulation_bodies(const simulation *s);
 
-/* The engine and its state, for benchmarks and tests. */
+/* Copies a field in order of id, as the engines' `read`; out NULL: components alone. 0 when there is no such field. */
+int simulation_read(const simulation *s, const char *field, double *out);
+
+/* The field that pictures colour by: damage, the diffused quantity, or broken bonds. */
+const char *simulation_picture_field(const simulation *s);
+
+/* The sheet engine and its state, or NULL where there are no sheets. */
+const sheet_engine *simulation_sheet_engine(const simulation *s, sheet **state);
+
+/* The solid engine and its state, for benchmarks and tests. */
 const solid_engine *simulation_engine(const simulation *s, solid **state);
 
 #endif

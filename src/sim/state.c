@@ -7,23 +7,27 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+static const char *set_of(const simulation *s) {
+    return s->sheet ? "sheet" : "solid";
+}
+
 /* Reads a field into a record of the run's precision. */
 static status add_field(const simulation *s, const char *field, const char *unit, record_list *list, report *r) {
-    int components = s->engine->components(s->solid, field);
+    int components = simulation_read(s, field, NULL);
     if (components == 0) return STATUS_OK;
     char name[RECORD_NAME];
-    snprintf(name, sizeof name, "solid/%s", field);
-    int64_t count = s->particles.count, values = count * components;
+    snprintf(name, sizeof name, "%s/%s", set_of(s), field);
+    int64_t values = s->count * components;
     bool narrow = s->engine->precision == 32;
     void *data;
-    status code = record_add(list, name, narrow ? RECORD_F32 : RECORD_F64, count, components, unit, &data, r);
+    status code = record_add(list, name, narrow ? RECORD_F32 : RECORD_F64, s->count, components, unit, &data, r);
     if (code != STATUS_OK || !narrow) {
-        if (code == STATUS_OK) s->engine->read(s->solid, field, data);
+        if (code == STATUS_OK) simulation_read(s, field, data);
         return code;
     }
     double *wide = memory_allocate_array((size_t)values, sizeof *wide);
     if (!wide) return report_set(r, STATUS_SYSTEM, "out of memory for the field '%s'", field);
-    s->engine->read(s->solid, field, wide);
+    simulation_read(s, field, wide);
     for (int64_t i = 0; i < values; i++) ((float *)data)[i] = (float)wide[i];
     memory_free(wide, (size_t)values * sizeof *wide);
     return STATUS_OK;
@@ -31,10 +35,25 @@ static status add_field(const simulation *s, const char *field, const char *unit
 
 static status add_ids(const simulation *s, record_list *list, report *r) {
     void *data;
-    status code = record_add(list, "solid/id", RECORD_I32, s->particles.count, 1, "1", &data, r);
-    for (int64_t i = 0; code == STATUS_OK && i < s->particles.count; i++) ((int32_t *)data)[i] = (int32_t)i;
-    if (code == STATUS_OK) code = record_add(list, "solid/body", RECORD_I32, s->particles.count, 1, "1", &data, r);
-    for (int64_t i = 0; code == STATUS_OK && i < s->particles.count; i++) ((int32_t *)data)[i] = s->particles.body[i];
+    char name[RECORD_NAME];
+    const uint8_t *body = simulation_bodies(s);
+    snprintf(name, sizeof name, "%s/id", set_of(s));
+    status code = record_add(list, name, RECORD_I32, s->count, 1, "1", &data, r);
+    for (int64_t i = 0; code == STATUS_OK && i < s->count; i++) ((int32_t *)data)[i] = (int32_t)i;
+    snprintf(name, sizeof name, "%s/body", set_of(s));
+    if (code == STATUS_OK) code = record_add(list, name, RECORD_I32, s->count, 1, "1", &data, r);
+    for (int64_t i = 0; code == STATUS_OK && i < s->count; i++) ((int32_t *)data)[i] = body[i];
+    return code;
+}
+
+/* Bonds stay who they are: pairs stand in frame 0 alone. */
+static status add_bonds(const simulation *s, record_list *list, report *r) {
+    int64_t count = s->sheets->bonds(s->sheet, NULL, NULL);
+    void *pairs = NULL, *broken = NULL;
+    status code = STATUS_OK;
+    if (s->frame == 0) code = record_add(list, "sheet/bonds", RECORD_I32, count, 2, "1", &pairs, r);
+    if (code == STATUS_OK) code = record_add(list, "sheet/bond_broken", RECORD_U8, count, 1, "1", &broken, r);
+    if (code == STATUS_OK) s->sheets->bonds(s->sheet, pairs, broken);
     return code;
 }
 
@@ -56,11 +75,11 @@ status simulation_frame_records(const simulation *s, record_list *list, report *
         for (int i = 0; i < s->plan.effects[e]->field_count && code == STATUS_OK; i++) {
             const effect_field *f = &s->plan.effects[e]->fields[i];
             char name[RECORD_NAME];
-            snprintf(name, sizeof name, "solid/%s", f->key);
+            snprintf(name, sizeof name, "%s/%s", set_of(s), f->key);
             if (f->written && (s->plan.mask >> e & 1) && !record_find(list, name)) code = add_field(s, f->key, f->unit, list, r);
         }
     if (code == STATUS_OK) code = add_tetrahedra(s, list, r);
-    return code;
+    return code == STATUS_OK && s->sheet ? add_bonds(s, list, r) : code;
 }
 
 /* ---- checkpoints ------------------------------------------------------------------------------------------------- */
@@ -77,12 +96,12 @@ status simulation_save(const simulation *s, record_list *list, report *r) {
     if (code != STATUS_OK) return code;
     memcpy(integers, (int64_t[]){s->frame, s->steps, s->has_initial_energy, s->warned_fixed + 2 * s->warned_damage}, CLOCK_INTEGERS * sizeof *integers);
     memcpy(reals, (double[]){s->time, s->dt_min, s->dt_max, s->initial_energy}, CLOCK_REALS * sizeof *reals);
-    const solid_boundary *b = s->engine->boundaries(s->solid);
+    const rigid_boundary *b = engine_boundaries(s);
     for (int i = 0; i < boundaries; i++) {
         memcpy(motions + i * MOTION_REALS, b[i].motion.translation, 3 * sizeof *motions);
         memcpy(motions + i * MOTION_REALS + 3, b[i].motion.rotation, 9 * sizeof *motions);
     }
-    return s->engine->save(s->solid, list, r);
+    return engine_save(s, list, r);
 }
 
 status simulation_restore(simulation *s, const record_list *list, report *r) {
@@ -92,7 +111,7 @@ status simulation_restore(simulation *s, const record_list *list, report *r) {
     status code = record_require(list, "sim/integers", RECORD_I64, CLOCK_INTEGERS, 1, (void **)&integers, r);
     if (code == STATUS_OK) code = record_require(list, "sim/reals", RECORD_F64, CLOCK_REALS, 1, (void **)&reals, r);
     if (code == STATUS_OK) code = record_require(list, "sim/motions", RECORD_F64, boundaries, MOTION_REALS, (void **)&motions, r);
-    if (code == STATUS_OK) code = s->engine->restore(s->solid, list, r);
+    if (code == STATUS_OK) code = engine_restore(s, list, r);
     if (code != STATUS_OK) return code;
     s->frame = integers[0];
     s->steps = integers[1];
@@ -103,7 +122,7 @@ status simulation_restore(simulation *s, const record_list *list, report *r) {
     s->dt_min = reals[1];
     s->dt_max = reals[2];
     s->initial_energy = reals[3];
-    solid_boundary *b = s->engine->boundaries(s->solid);
+    rigid_boundary *b = engine_boundaries(s);
     for (int i = 0; i < boundaries; i++) {
         memcpy(b[i].motion.translation, motions + i * MOTION_REALS, 3 * sizeof *motions);
         memcpy(b[i].motion.rotation, motions + i * MOTION_REALS + 3, 9 * sizeof *motions);
@@ -112,14 +131,14 @@ status simulation_restore(simulation *s, const record_list *list, report *r) {
 }
 
 status simulation_hash(const simulation *s, uint64_t *hash, report *r) {
-    static const char *const fields[] = {"position", "velocity", "deformation_gradient", "damage"};
-    size_t bytes = (size_t)s->particles.count * 9 * sizeof(double);
+    static const char *const fields[] = {"position", "velocity", "deformation_gradient", "damage", "diffused", "broken"};
+    size_t bytes = (size_t)s->count * 9 * sizeof(double);
     double *values = memory_allocate(bytes);
     if (!values) return report_set(r, STATUS_SYSTEM, "out of memory for the state's hash");
     *hash = 0;
     for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
-        int components = s->engine->read(s->solid, fields[i], values);
-        *hash = XXH3_64bits_withSeed(values, (size_t)s->particles.count * (size_t)components * sizeof *values, *hash);
+        int components = simulation_read(s, fields[i], values);
+        *hash = XXH3_64bits_withSeed(values, (size_t)s->count * (size_t)components * sizeof *values, *hash);
     }
     memory_free(values, bytes);
     return STATUS_OK;

@@ -7,7 +7,8 @@
 
 enum {
     PATIENCE = 40, /* iterations with Jacobi's before AUTO looks for better */
-    STALE = 25,    /* iterations with a library's before it is made anew */
+    STALE = 20,    /* iterations with a library's before it is made anew */
+    EAGER = 12,    /* solves that make theirs at once, after one that had to make it anew */
 };
 
 /* Multiplications that a factorisation may take: some seconds. */
@@ -21,7 +22,7 @@ static const double SHIFT = 1e-9, SHIFT_OF_LARGEST = 1e-9;
 bool constraint_is_slow(const solid *s, int since, int built) {
     const fibre_constraint *c = &s->constraint;
     if (c->refused || c->solver == CONSTRAINT_JACOBI || built > 1) return false;
-    if (c->preconditioner) return since == STALE;
+    if (c->preconditioner) return since == (built == 0 && c->eager > 0 ? 0 : STALE);
     return since == (c->solver == CONSTRAINT_AUTO ? PATIENCE : 0);
 }
 
@@ -33,6 +34,11 @@ void constraint_forget(solid *s) {
     c->preconditioner = NULL, c->vector = NULL, c->unknown = NULL;
     c->vector_size = c->unknowns = 0;
     c->refused = false;
+}
+
+void constraint_begin_frame(solid *s) {
+    constraint_forget(s);
+    s->constraint.eager = 0;
 }
 
 static int32_t count_unknowns(const solid *s) {
@@ -94,6 +100,7 @@ static void shift_diagonal(sparse_matrix *m) {
 
 status constraint_precondition(solid *s, real dt, report *r) {
     fibre_constraint *c = &s->constraint;
+    c->eager = c->eager > 0 ? c->eager - 1 : c->preconditioner ? EAGER : 0;
     sparse_matrix m = {0};
     status code = number_unknowns(s, r);
     if (code == STATUS_OK) code = constraint_assemble(s, dt, c->number, c->unknowns, &m, r);

@@ -171,7 +171,7 @@ static status sort(solid *s, report *r) {
 
 /* What a frame starts with must not depend on the steps before it, or a resumed run would differ. */
 static status begin_frame(solid *s, report *r) {
-    constraint_forget(s);
+    constraint_begin_frame(s);
     return sort(s, r);
 }
 

@@ -1,17 +1,26 @@
-/* Damage, implicit, on the grid (AnisoMPM §4.3; METHOD.md §2). Multiplied through by η/Δt, so that nothing is divided by η and
- * η = 0 is the rate-independent limit:
- *     (A + B) d = c,   A_i = Σ V (η/Δt + D̃ + 1) w_ip,   B_ij = Σ V l0² ∇Θ_i·∇Θ_j,   c_i = Σ V (D̃ + (η/Δt) d_iⁿ) w_ip,
- * ∇Θ_i = D⁻¹ w_ip (x_i − x_p). Symmetric, positive definite, diagonally strong: conjugate gradients with Jacobi's
- * preconditioner, matrix-free, from dⁿ. Sums over nodes are made slot by slot and added in the order of slots, so the iterations have
- * the same bits at any number of threads. Particles take back the nodes' increments. */
+/* Damage, implicit (AnisoMPM §4.3; METHOD.md §2), multiplied through by η/Δt, so that nothing is divided by η and η = 0 is the
+ * rate-independent limit. A particle's backward Euler step is
+ *     r_p d_p = b_p + Σ_i w_ip s_i,   r_p = η/Δt + 1 + D̃_p,   b_p = (η/Δt) d_pⁿ + D̃_p,
+ * where s_i is diffusion l0² Δd at the nodes: s = −V⁻¹ B d, V_i = Σ V_p w_ip, B_ij = Σ V_p l0² ∇Θ_i·∇Θ_j, ∇Θ_i = D⁻¹ w_ip (x_i − x_p), of
+ * the nodes' means d_i = Σ V_p w_ip d_p / V_i. Putting the first into the last, with the mean of w s / r lumped to s_i R_i,
+ *     (A + B) d = c,   A_i = V_i/R_i,   c_i = A_i m_i,   R_i = Σ V_p w_ip / r_p / V_i,   m_i = Σ V_p w_ip b_p / r_p / V_i.
+ * Symmetric, positive definite, diagonally strong: conjugate gradients with Jacobi's preconditioner, matrix-free, from m. Sums over
+ * nodes are made slot by slot and added in the order of slots, so the iterations have the same bits at any number of threads. Then each
+ * particle takes its step (implicit_damage in state.h).
+ *
+ * Where D̃ is even this is the paper's system, A_i = Σ V_p r_p w_ip. Where it is not, the paper's arithmetic mean of r lets the driven
+ * particles speak for all: a node half of whose particles are broken is broken. With its increments handed back (FLIP) and only growth
+ * kept, particles near a driven one then follow it, and driven ones pass their own equilibrium D̃/(1 + D̃): a band of D̃ = 20, two cells
+ * wide, ended at d = 1 instead of 0.95, half as wide again, at any Δt. */
 #include "base/memory.h"
 #include "base/threads.h"
 #include "solid/kernels.h"
 
 #include <math.h>
 
-/* Planes of nodes, [slot][PLANES][BLOCK_NODES]. The first four are scattered together. */
-enum { DIAGONAL, SOURCE, RATE, PRECONDITIONER, OLD, SOLUTION, RESIDUAL_VECTOR, SEARCH, IMAGE, PLANES, SCATTERED = 4 };
+/* Planes of nodes, [slot][PLANES][BLOCK_NODES]. The first four are scattered together: DIAGONAL starts as V R, SOURCE as V m,
+ * PRECONDITIONER as B's diagonal. */
+enum { DIAGONAL, SOURCE, PRECONDITIONER, VOLUME, SPREAD, SOLUTION, RESIDUAL_VECTOR, SEARCH, IMAGE, PLANES, SCATTERED = IMPLICIT_WINDOWS };
 
 enum { ITERATION_LIMIT = 1000 };
 
@@ -82,17 +91,17 @@ SIMD_INLINE real gradient_scale(const solid *s) {
     return (real)((s->definition.laplacian == KERNEL_QUADRATIC ? 4.0 : 3.0) / s->definition.dx);
 }
 
-SIMD_INLINE void scatter_system(const particle_kernel *k, int nodes, real volume, real history, real rate, real spread, real *window) {
+SIMD_INLINE void scatter_system(const particle_kernel *k, int nodes, real volume, real mobility, real own, real spread, real *window) {
     for (int i = 0; i < nodes; i++)
         for (int j = 0; j < nodes; j++) {
             real wij = k->w[0][i] * k->w[1][j], reach = k->x[0][i] * k->x[0][i] + k->x[1][j] * k->x[1][j];
             real *to = window + k->node + (i * WINDOW + j) * WINDOW;
             for (int n = 0; n < nodes; n++) {
                 real w = wij * k->w[2][n], distance2 = reach + k->x[2][n] * k->x[2][n];
-                to[DIAGONAL * WINDOW_NODES + n] += volume * (rate + history + 1) * w;
-                to[SOURCE * WINDOW_NODES + n] += volume * history * w;
-                to[RATE * WINDOW_NODES + n] += volume * rate * w;
+                to[DIAGONAL * WINDOW_NODES + n] += volume * mobility * w;
+                to[SOURCE * WINDOW_NODES + n] += volume * own * w;
                 to[PRECONDITIONER * WINDOW_NODES + n] += volume * spread * w * w * distance2;
+                to[VOLUME * WINDOW_NODES + n] += volume * w;
             }
         }
 }
@@ -140,8 +149,10 @@ SIMD_INLINE void system_block(pass_context *c, int32_t index, int worker, kernel
         const implicit_material *m = &s->implicit_materials[tile->material];
         real rate = m->eta / c->dt, spread = m->length2 * gradient2;
         FOR_EACH_KERNEL(s, tile, kind, k,
-                        scatter_system(&kernel, nodes, field_at(&s->fields[FIELD_VOLUME], pack, 0, 0)[within],
-                                       field_at(&s->fields[s->history_field], pack, 0, 0)[within], rate, spread, window))
+                        real history = field_at(&s->fields[s->history_field], pack, 0, 0)[within];
+                        real mobility = 1 / (rate + 1 + history);
+                        real own = mobility * (rate * field_at(&s->fields[s->damage_field], pack, 0, 0)[within] + history);
+                        scatter_system(&kernel, nodes, field_at(&s->fields[FIELD_VOLUME], pack, 0, 0)[within], mobility, own, spread, window))
     }
     for (int which = 0; which < SCATTERED; which++) exchange_plane(s, b, window + which * WINDOW_NODES, which, true);
 }
@@ -191,19 +202,21 @@ static void clear_planes(void *context, int64_t slot, int worker) {
     memset(plane(context, slot, 0), 0, SCATTERED * BLOCK_NODES * sizeof(real));
 }
 
-/* d_iⁿ, the right-hand side, and the start: solution, residual's first half (c − A x without B x) and search = solution for B x. */
+/* A, c, and the start: solution = search = m, for B x. */
 static void prepare_slot(void *context, int64_t slot, int worker) {
     (void)worker;
     solid *s = context;
-    const real *sums = s->damage_grid + slot * BLOCK_NODES * DAMAGE_NODE;
-    real *diagonal = plane(s, slot, DIAGONAL), *source = plane(s, slot, SOURCE), *rate = plane(s, slot, RATE);
-    real *precondition = plane(s, slot, PRECONDITIONER), *old = plane(s, slot, OLD), *x = plane(s, slot, SOLUTION);
+    real *diagonal = plane(s, slot, DIAGONAL), *source = plane(s, slot, SOURCE), *precondition = plane(s, slot, PRECONDITIONER);
+    real *x = plane(s, slot, SOLUTION);
+    const real *volume = plane(s, slot, VOLUME);
     double norm = 0;
     for (int n = 0; n < BLOCK_NODES; n++) {
-        old[n] = sums[BLOCK_NODES + n] > 0 ? sums[n] / sums[BLOCK_NODES + n] : 0;
-        source[n] += rate[n] * old[n];
-        precondition[n] = diagonal[n] > 0 ? 1 / (diagonal[n] + precondition[n]) : 0;
-        x[n] = diagonal[n] > 0 ? old[n] : 0;
+        bool used = diagonal[n] > 0;
+        real inverse = used ? volume[n] / diagonal[n] : 0;
+        x[n] = used ? source[n] / volume[n] : 0;
+        diagonal[n] = volume[n] * inverse;
+        source[n] *= inverse;
+        precondition[n] = used ? 1 / (diagonal[n] + precondition[n]) : 0;
         norm += (double)source[n] * (double)source[n];
     }
     memcpy(plane(s, slot, SEARCH), x, BLOCK_NODES * sizeof *x);
@@ -281,18 +294,25 @@ static void turn_slot(void *context, int64_t slot, int worker) {
     for (int n = 0; n < BLOCK_NODES; n++) p[n] = precondition[n] * r[n] + c->factor * p[n];
 }
 
-/* The nodes' increments, where the way back to the particles looks for them. */
-static void increment_slot(void *context, int64_t slot, int worker) {
+/* search ← d, image ← 0: B d alone comes next. */
+static void solved_slot(void *context, int64_t slot, int worker) {
     (void)worker;
-    solid *s = context;
-    real *old = plane(s, slot, OLD);
-    const real *x = plane(s, slot, SOLUTION), *diagonal = plane(s, slot, DIAGONAL);
-    for (int n = 0; n < BLOCK_NODES; n++) old[n] = diagonal[n] > 0 ? x[n] - old[n] : 0;
+    memcpy(plane(context, slot, SEARCH), plane(context, slot, SOLUTION), BLOCK_NODES * sizeof(real));
+    memset(plane(context, slot, IMAGE), 0, BLOCK_NODES * sizeof(real));
 }
 
-static void no_increment_slot(void *context, int64_t slot, int worker) {
+/* Diffusion at the nodes, where the way back to the particles looks for it. */
+static void spread_slot(void *context, int64_t slot, int worker) {
     (void)worker;
-    memset(plane(context, slot, OLD), 0, BLOCK_NODES * sizeof(real));
+    solid *s = context;
+    real *spread = plane(s, slot, SPREAD);
+    const real *image = plane(s, slot, IMAGE), *volume = plane(s, slot, VOLUME);
+    for (int n = 0; n < BLOCK_NODES; n++) spread[n] = volume[n] > 0 ? -image[n] / volume[n] : 0;
+}
+
+static void no_spread_slot(void *context, int64_t slot, int worker) {
+    (void)worker;
+    memset(plane(context, slot, SPREAD), 0, BLOCK_NODES * sizeof(real));
 }
 
 static void over_slots(solid *s, void (*pass)(void *, int64_t, int), void *context) {
@@ -309,9 +329,13 @@ static void sum_slots(const solid *s, double *first, double *second) {
 
 /* ---- conjugate gradients ----------------------------------------------------------------------------------------- */
 
+static void add_diffusion(solid *s) {
+    by_colour(s, 0, s->definition.laplacian == KERNEL_CUBIC ? apply_cubic : apply_quadratic);
+}
+
 static void apply_operator(solid *s) {
     over_slots(s, diagonal_slot, s);
-    by_colour(s, 0, s->definition.laplacian == KERNEL_CUBIC ? apply_cubic : apply_quadratic);
+    add_diffusion(s);
 }
 
 status implicit_solve(solid *s, real dt, report *r) {
@@ -323,7 +347,7 @@ status implicit_solve(solid *s, real dt, report *r) {
     sum_slots(s, &right, &unused);
     s->implicit_solves++;
     if (right == 0) { /* nothing drives and nothing is damaged: d = 0 is the solution */
-        over_slots(s, no_increment_slot, s);
+        over_slots(s, no_spread_slot, s);
         return STATUS_OK;
     }
     apply_operator(s);
@@ -345,17 +369,19 @@ status implicit_solve(solid *s, real dt, report *r) {
         over_slots(s, turn_slot, &c);
         s->implicit_iterations++;
     }
-    over_slots(s, increment_slot, s);
+    over_slots(s, solved_slot, s);
+    add_diffusion(s);
+    over_slots(s, spread_slot, s);
     return STATUS_OK;
 }
 
 /* ---- back to particles ------------------------------------------------------------------------------------------- */
 
 void implicit_load_window(const solid *s, const solid_block *b, real *window) {
-    exchange_plane(s, b, window, OLD, false);
+    exchange_plane(s, b, window, SPREAD, false);
 }
 
-SIMD_INLINE real gather_increment(const particle_kernel *k, int nodes, const real *window) {
+SIMD_INLINE real gather_spread(const particle_kernel *k, int nodes, const real *window) {
     real total = 0;
     for (int i = 0; i < nodes; i++)
         for (int j = 0; j < nodes; j++) {
@@ -371,9 +397,9 @@ void implicit_gather(const tile_work *w, const real *window) {
     const solid *s = w->state;
     if (s->definition.laplacian == KERNEL_QUADRATIC) {
         FOR_EACH_KERNEL(s, w->tile, KERNEL_QUADRATIC, k,
-                        (void)pack; scratch_at(w->scratch->laplacian, 1, k, 0, 0)[within] = gather_increment(&kernel, 3, window))
+                        (void)pack; scratch_at(w->scratch->laplacian, 1, k, 0, 0)[within] = gather_spread(&kernel, 3, window))
     } else {
         FOR_EACH_KERNEL(s, w->tile, KERNEL_CUBIC, k,
-                        (void)pack; scratch_at(w->scratch->laplacian, 1, k, 0, 0)[within] = gather_increment(&kernel, 4, window))
+                        (void)pack; scratch_at(w->scratch->laplacian, 1, k, 0, 0)[within] = gather_spread(&kernel, 4, window))
     }
 }

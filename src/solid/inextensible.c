@@ -22,7 +22,7 @@
 #include <math.h>
 
 /* Planes of cells, [slot][PLANES][BLOCK_NODES]. */
-enum { TENSION, WEIGHT, RELAXATION, RESIDUAL, PRECONDITIONER, SEARCH, IMAGE, PRECONDITIONED, PLANES };
+enum { TENSION, WEIGHT, RELAXATION, STRAIN, RESIDUAL, PRECONDITIONER, SEARCH, IMAGE, PRECONDITIONED, PLANES, STARTED = 4 };
 
 enum { ITERATION_LIMIT = 2000, SET_ROUNDS = 4 };
 
@@ -31,9 +31,10 @@ enum { ITERATION_LIMIT = 2000, SET_ROUNDS = 4 };
  * (A rope under 1000 times Fig. 21's load: 1e-6 diverges, 1e-4 keeps its length to 5e-4, 1e-3 to 7e-3.) */
 #define REGULARISATION ((real)1e-4)
 
-/* Share of a fibre's stretch that is taken back each step: what tolerance and time steps let through does not add up. Beyond the most
- * that is corrected at once a fibre is pulled back gently. */
-#define CORRECTION ((real)0.1)
+/* Share of a fibre's stretch that is taken back each step, so that what tolerance and time steps let through does not add up; beyond
+ * the most that is corrected at once a fibre is pulled back gently. It is the cells' mean that is taken back: what single
+ * particles stretch beside it is in nobody's power, and asking for it drives tension without bound. */
+#define CORRECTION ((real)0.25)
 #define CORRECTED_MOST ((real)0.05)
 
 /* ---- memory ------------------------------------------------------------------------------------------------------ */
@@ -129,24 +130,26 @@ static void exchange_vectors(const solid *s, const solid_block *b, real *window,
     exchange_window(b, window, s->constraint.nodes, NODE, BLOCK_NODES * NODE, wide, to_grid);
 }
 
-/* The particles' tensions, weights and relaxations to the cells: the start of a solve. */
+/* The particles' tensions, weights, relaxations and strains to the cells: the start of a solve. */
 SIMD_INLINE void start_block(pass_context *c, int32_t index, int worker, kernel_kind kernel) {
     solid *s = c->state;
     const solid_block *b = &s->blocks[index];
     if (!block_is_inextensible(s, b)) return;
     real *window = s->workers[worker].implicit_window;
-    memset(window, 0, 3 * WINDOW_NODES * sizeof *window);
+    memset(window, 0, STARTED * WINDOW_NODES * sizeof *window);
     FOR_EACH_PART(s, b, {
         fibre_lanes l = lanes_load(s, kernel, pack, part);
         vec tension = vec_load(field_at(&s->fields[s->tension_field], pack, 0, part));
+        vec strain = vec_max(vec_min(l.stretch - 1, vec_all(CORRECTED_MOST)), vec_all(-CORRECTED_MOST));
         real relaxation = s->constraint.relaxation[t->material] / c->dt;
         for (int lane = 0; lane < LANES_OF(t, first); lane++) {
             cells_scatter(&l, lane, l.volume[lane] * tension[lane], window + TENSION * WINDOW_NODES);
             cells_scatter(&l, lane, l.volume[lane], window + WEIGHT * WINDOW_NODES);
             cells_scatter(&l, lane, l.volume[lane] * relaxation, window + RELAXATION * WINDOW_NODES);
+            cells_scatter(&l, lane, l.volume[lane] * strain[lane], window + STRAIN * WINDOW_NODES);
         }
     })
-    for (int which = TENSION; which <= RELAXATION; which++) exchange_plane(s, b, window + which * WINDOW_NODES, which, true);
+    for (int which = 0; which < STARTED; which++) exchange_plane(s, b, window + which * WINDOW_NODES, which, true);
 }
 
 /* Nodes ← Bᵀ SEARCH. */
@@ -226,14 +229,14 @@ SIMD_INLINE void collect_block(pass_context *c, int32_t index, int worker, kerne
     node_row node_offset = row_spread(offsets);
     exchange_vectors(s, b, own->window, false);
     memset(cells, 0, WINDOW_NODES * sizeof *cells);
+    if (into == RESIDUAL) exchange_plane(s, b, cells + WINDOW_NODES, STRAIN, false);
     FOR_EACH_PART(s, b, {
         fibre_lanes l = lanes_load(s, kernel, pack, part);
         gather_records(own->tile.records, first, LANES_OF(t, first), &l, kernel, node_offset, own->window);
         vec value = l.volume * scale * stretching(&l, own->tile.records, first);
-        if (into == RESIDUAL) {
-            vec strain = vec_max(vec_min(l.stretch - 1, vec_all(CORRECTED_MOST)), vec_all(-CORRECTED_MOST));
-            value += l.volume * strain * (CORRECTION / c->dt);
-        }
+        if (into == RESIDUAL)
+            for (int lane = 0; lane < LANES_OF(t, first); lane++)
+                value[lane] += l.volume[lane] * cells_gather(&l, lane, cells + WINDOW_NODES) * (CORRECTION / c->dt);
         for (int lane = 0; lane < LANES_OF(t, first); lane++) cells_scatter(&l, lane, value[lane], cells);
     })
     exchange_plane(s, b, cells, into, true);
@@ -390,11 +393,13 @@ static void prepare_slot(void *context, int64_t slot, int worker) {
     slot_context *c = context;
     solid *s = c->state;
     real *tension = plane(s, slot, TENSION), *weight = plane(s, slot, WEIGHT), *search = plane(s, slot, SEARCH);
+    real *strain = plane(s, slot, STRAIN);
     const real *nodes = s->grid + slot * BLOCK_NODES * NODE;
     real *v = vectors(s, slot);
     constraint_sums sums = {0};
     for (int n = 0; n < BLOCK_NODES; n++) {
         tension[n] = weight[n] > 0 ? tension[n] / weight[n] : 0;
+        strain[n] = weight[n] > 0 ? strain[n] / weight[n] : 0;
         search[n] = tension[n];
         sums.first += (double)weight[n] * (double)weight[n];
         double speed2 = 0;

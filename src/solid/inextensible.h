@@ -23,8 +23,9 @@ bool constraint_is_slow(const solid *s, int since, int built);
 status constraint_precondition(solid *s, real dt, report *r);
 /* Finds its unknowns again after the grid was built anew. */
 status constraint_map(solid *s, report *r);
-/* Drops it: a frame starts without, so that a resumed run has the same bits. */
+/* Drops it; a frame starts without, so that a resumed run has the same bits. */
 void constraint_forget(solid *s);
+void constraint_begin_frame(solid *s);
 
 /* Σ V Γ and ε of a cell. */
 double constraint_weight(const solid *s, int32_t slot, int n);

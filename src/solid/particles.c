@@ -83,6 +83,12 @@ static status load_keys(solid *s, bool *full, report *r) {
     return STATUS_OK;
 }
 
+/* Damage at the start, with the driving that holds it: d = H/(1 + H). Undriven, the implicit form would let it relax on the nodes. */
+static void load_damage(solid *s, int32_t pack, int lane, double damage) {
+    field_at(&s->fields[s->damage_field], pack, 0, 0)[lane] = (real)damage;
+    field_at(&s->fields[s->history_field], pack, 0, 0)[lane] = (real)fmin(damage / fmax(1 - damage, 1e-6), 1e6);
+}
+
 /* Writes particle i of the definition into a slot; `alive` false makes it padding. */
 static void load_particle(solid *s, int32_t pack, int lane, int64_t i, bool alive) {
     const solid_definition *d = &s->definition;
@@ -98,6 +104,7 @@ static void load_particle(solid *s, int32_t pack, int lane, int64_t i, bool aliv
         if (s->fibre_field >= 0) field_at(&s->fields[s->fibre_field], pack, c, 0)[lane] = (real)d->fibre1[3 * i + c];
         if (s->fibre2_field >= 0) field_at(&s->fields[s->fibre2_field], pack, c, 0)[lane] = (real)d->fibre2[3 * i + c];
     }
+    if (s->damage_field >= 0 && d->damage) load_damage(s, pack, lane, alive ? d->damage[i] : 0);
     field_at(&s->fields[FIELD_VOLUME], pack, 0, 0)[lane] = alive ? (real)d->volume[i] : 0;
 }
 

@@ -8,7 +8,7 @@
 #include "base/record.h"
 #include "effect/effect.h"
 #include "effect/kinds.h"
-#include "geom/shape.h"
+#include "geom/rigid.h"
 
 #include <stdint.h>
 
@@ -20,23 +20,7 @@ typedef struct solid_material {
     bool protects;                /* particles of this material are never damaged (they were gripped at the start) */
 } solid_material;
 
-/* A rigid shape at its place: maps between its rest frame (time 0) and the world. */
-typedef struct rigid_motion {
-    double translation[3];
-    double rotation[9]; /* about `pivot` */
-    double pivot[3];    /* at time 0 */
-    double velocity[3], spin[3];
-    bool active;
-} rigid_motion;
-
-/* A rigid shape that takes hold of the grid (a grip) or keeps material out (a collider). */
-typedef struct solid_boundary {
-    const shape *shape; /* in its rest frame */
-    bool grip;
-    contact_kind contact;
-    double friction;
-    rigid_motion motion; /* updated by the caller before each step */
-} solid_boundary;
+typedef rigid_boundary solid_boundary;
 
 typedef struct solid_definition {
     int threads;
@@ -54,6 +38,7 @@ typedef struct solid_definition {
     const double *position, *velocity; /* [count][3] */
     const double *volume;              /* [count], rest volume */
     const double *fibre1, *fibre2;     /* [count][3], unit and orthogonal; NULL when no effect needs them */
+    const double *damage;              /* [count], at the start, 0 to 1; NULL: whole */
     const uint8_t *material;           /* [count] */
     /* A body of tetrahedra: particles are its vertices, `position` their places at rest. Fibres and
      * `material` are the elements'; `volume` is not read. */
@@ -128,11 +113,5 @@ const solid_engine *solid_engine_find(int precision, const char *simd);
 /* The engine of bodies of tetrahedra, in which F comes from the mesh (solid paper, Fig. 19), behind the same table: particles are the mesh's
  * vertices. "deformation_gradient" is the mean over a vertex' elements, determinants are the elements' own. There is no sorting. */
 const solid_engine *solid_tetra_find(int precision, const char *simd);
-
-/* World position → the boundary's rest frame, and the velocity of the boundary's material at a world position. */
-void rigid_motion_to_rest(const rigid_motion *m, const double x[3], double rest[3]);
-void rigid_motion_velocity(const rigid_motion *m, const double x[3], double velocity[3]);
-/* Moves it on by dt with its current velocity and spin. */
-void rigid_motion_advance(rigid_motion *m, double dt);
 
 #endif

@@ -30,6 +30,7 @@ enum {
     NEIGHBOURS = 27,
     CONSTANTS = 16,      /* reals an effect may derive from a material's values */
     EFFECT_FIELDS = 8,
+    IMPLICIT_WINDOWS = 4, /* planes of nodes that a solve on the grid scatters together */
 };
 
 /* The particle fields that the engine itself keeps; effects' fields follow. */
@@ -70,7 +71,7 @@ typedef struct solid_worker {
     real window[WINDOW_NODES * NODE];
     real old_window[WINDOW_NODES * NODE]; // FLIP only
     real damage_window[WINDOW_NODES * DAMAGE_NODE];
-    real implicit_window[WINDOW_NODES * 4]; // what is solved for on the grid: planes
+    real implicit_window[WINDOW_NODES * IMPLICIT_WINDOWS]; // what is solved for on the grid: planes
 } solid_worker;
 
 /* What the implicit solve needs of a material. */
@@ -107,6 +108,7 @@ typedef struct fibre_constraint {
     int64_t solves, iterations, factorisations;
     struct sparse_solver *preconditioner; /* NULL: Jacobi's */
     bool refused;  /* no library is worth its work for now */
+    int eager;     /* solves to come that make a preconditioner at once */
     bool mapped;   /* `number` belongs to the slots as they are */
     double *vector;        // [2][vector_size], what the preconditioner reads and writes
     int32_t (*unknown)[3]; // [vector_size], cells in grid coordinates
@@ -257,13 +259,18 @@ void grid_collect_results(solid *s); /* adds what the slots' boundaries did to t
 void transfer_to_grid(solid *s, real dt);
 void transfer_to_particles(solid *s, real dt);
 void transfer_limits(solid *s); /* the momentum limit of a state that no step has reached: at the start, after a knob */
-/* implicit.c: memory for a number of slots; the solve; then a block's increments and their sum at a tile's particles, left in
- * scratch->laplacian */
+/* implicit.c: memory for a number of slots; the solve; then a block's diffusion l0² Δd and its value at a tile's particles, left
+ * in scratch->laplacian */
 status implicit_reserve(solid *s, int32_t slots, report *r);
 void implicit_free(solid *s);
 status implicit_solve(solid *s, real dt, report *r);
 void implicit_load_window(const solid *s, const solid_block *b, real *window);
 void implicit_gather(const tile_work *w, const real *window);
+/* A particle's own step from dⁿ: driven by H, with the diffusion of the nodes' solution and rate = η/Δt. */
+SIMD_INLINE vec implicit_damage(vec d, vec H, vec spread, real rate) {
+    vec solved = vec_fma(vec_all(rate), d, H + spread) / (H + (rate + 1));
+    return vec_min(vec_max(solved, d), vec_all(1));
+}
 /* measure.c */
 status solid_measure(const solid *s, solid_measures *m, report *r);
 /* snapshot.c */

@@ -50,6 +50,7 @@
 #define constraint_is_slow SOLID_VARIANT(constraint_is_slow)
 #define constraint_precondition SOLID_VARIANT(constraint_precondition)
 #define constraint_map SOLID_VARIANT(constraint_map)
+#define constraint_begin_frame SOLID_VARIANT(constraint_begin_frame)
 #define constraint_forget SOLID_VARIANT(constraint_forget)
 #define constraint_weight SOLID_VARIANT(constraint_weight)
 #define constraint_relaxation SOLID_VARIANT(constraint_relaxation)

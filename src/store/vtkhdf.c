@@ -85,6 +85,7 @@ static status link_fields(hid_t group, const char *path, const record_list *reco
         const record *item = &records->items[i];
         if (item == points || item->count != points->count) continue;
         if (strncmp(item->name, points->name, front) != 0) continue;
+        if (strncmp(item->name + front, "bond", 4) == 0) continue; /* a row a bond: as many as points by chance */
         char name[RECORD_NAME];
         snprintf(name, sizeof name, "%s", item->name + front);
         for (char *slash = name; (slash = strchr(slash, '/'));) *slash = '_';

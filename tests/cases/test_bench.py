@@ -72,8 +72,21 @@ def test_narrowing():
     check(code == 0 and out.count("elastic") == 1 and "f64" in out and err == "", f"one row for people: {code} {out} {err}")
 
 
+def test_sheet():
+    code, out, err = call("sheet", "--json", "--particles", "2500", "--threads", "1", "--precision", "f32", "--seconds", "0")
+    check(code == 0, f"sheet: {err}")
+    data = json.loads(out)
+    check(data["machine"]["triad_gb_s"] > 0 and data["machine"]["fma_gflop_s"] > 0, "sheet: the machine")
+    check([(r["case"], r["neighbours"]) for r in data["rows"]] == [("linear", 8), ("tearing", 8), ("linear", 28), ("tearing", 28)], "sheet: cases")
+    for row in data["rows"]:
+        # bonds are counted from both ends; edges have fewer
+        check(row["engine"] == "sheet" and row["particles"] == 2500 and 0.85 * row["neighbours"] < row["bonds"] / 2500 < row["neighbours"], f"sheet: {row}")
+        rate = row["bonds"] * 1e9 / (row["ns_per_particle"] * row["particles"])
+        check(abs(row["bond_steps_per_s"] / rate - 1) < 1e-6, "sheet: rates agree")
+
+
 def test_wrong_arguments():
-    for arguments, expected in ((["sheet"], "not in this version"), (["sheet", "--json"], "not in this version"), ([], "expected"),
+    for arguments, expected in ((["sheet", "--case", "elastic"], "belong to step"), ([], "expected"),
                                 (["steps"], "expected step"), (["step", "--case", "elastc"], "elastic"),
                                 (["step", "--precision", "f16"], "f32 or f64"), (["step", "--repeat", "0"], "whole number"),
                                 (["step", "--seconds", "x"], "a number"), (["step", "--particles", "3"], "whole number")):

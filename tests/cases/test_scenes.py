@@ -2,6 +2,7 @@
 """The mechanics of the solid paper's figures, at reduced size: what breaks, in which direction, which variant does not.
 
 Usage: test_scenes.py SUNDER SOURCE_DIR [NAME...]   Each run works in a scratch folder and with a ledger of its own.
+Each run has one thread: ctest runs tests side by side.
 Directions come from the gradient of damage at rest, as the summary's crack_normal does; here also for plates that are
 thinner than three cells, and in polar coordinates. Frames are read through the HDF5 library that the program itself uses.
 """
@@ -79,7 +80,7 @@ class Box:
         chosen = [part for key, value in dict(particles=particles, **settings).items() for part in ("--set", f"{key}={value}")]
         path = os.path.join(SOURCE, f"scenes/solid/{scene}.lua")
         limit = ["--frames", str(frames)] if frames else []
-        code, out, err = self.call("run", path, *chosen, *limit, "--out", os.path.join(self.folder, f"run{self.count}"), "--json", "--quiet")
+        code, out, err = self.call("run", path, *chosen, *limit, "--threads", "1", "--out", os.path.join(self.folder, f"run{self.count}"), "--json", "--quiet")
         if code:
             raise RuntimeError(f"{scene} {settings}: exit code {code}: {err.strip()[-300:]}")
         summary = json.loads(out)
@@ -156,12 +157,35 @@ def test_every_scene_is_right():
 def test_tube_pull():
     slant, across = (-1, 1, 0), (1, 0, 0)
     with Box() as box:
-        runs = {v: box.run("tube_pull", None, 3000, variant=v) for v in ("full", "isotropic", "damage_only", "elastic_only")}
+        runs = {v: box.run("tube_pull", None, 5000, variant=v) for v in ("full", "isotropic", "damage_only", "elastic_only")}
         print("  degrees from the fibres' tear, from across:", {v: (round(turned(r, slant)), round(turned(r, across))) for v, r in runs.items()})
-        check(turned(runs["full"], slant) < 15, f"full tears along the fibres: {runs['full']['crack_normal']}")
+        check(turned(runs["full"], slant) < 12, f"full tears along the fibres: {runs['full']['crack_normal']}")
         check(turned(runs["isotropic"], across) < 10, f"isotropic tears across: {runs['isotropic']['crack_normal']}")
         check(turned(runs["full"], slant) < turned(runs["damage_only"], slant), "damage alone is guided more weakly")
         check(broken(runs["elastic_only"]) == 0 and runs["elastic_only"]["crack_normal"] is None, "without damage nothing is broken")
+
+
+def test_tube_compress():
+    with Box() as box:
+        shares = {}
+        for variant in ("full", "isotropic", "elastic_only"):
+            run = box.run("tube_compress", 30, 8000, variant=variant)
+            if variant == "elastic_only":
+                height = max(y for _, y, _ in frames.places(run, run["frames"]).values())
+                check(broken(run) == 0 and "damage" not in run["effects"], "without damage nothing breaks")
+                check(height < 0.5, f"and the tube folds under the crusher: {height}")
+                continue
+            # Damage's gradient in the wall: along the fibres, around, outwards.
+            sums = [0.0] * 3
+            for (x, y, z), (gx, gy, gz) in gradients(frames.damaged(run), run["dx"], (0, 1, 2)):
+                if 0.1 < y < 0.9:
+                    r = math.hypot(x, z)
+                    sums = [s + v * v for s, v in zip(sums, (gy, (gz * x - gx * z) / r, (gx * x + gz * z) / r))]
+            shares[variant] = [s / sum(sums) for s in sums]
+            check(broken(run) > 0.1, f"{variant} breaks")
+        print("  shares of damage's gradient along the wall, around, outwards:", {v: [round(s, 2) for s in w] for v, w in shares.items()})
+        check(shares["full"][0] < 0.25 and shares["full"][1] > 1.5 * shares["full"][0], f"full splits into staves, along its fibres: {shares}")
+        check(shares["isotropic"][0] > 1.5 * shares["isotropic"][1], f"isotropic crumbles from the top, across: {shares}")
 
 
 def test_disk_shoot():
@@ -235,38 +259,129 @@ def test_notched_block():
         print("  degrees off the fibres:", round(turned(soft, slant)), " frame of the first crack:", start, " broken:", [round(broken(r), 3) for r in (soft, tough, slow)])
         check(turned(soft, slant) < 15, f"the crack follows the fibres: {soft['crack_normal']}")
         check(start[0] is not None and (start[1] is None or start[1] > start[0]), f"a larger sigma_c breaks later: {start}")
-        check(broken(slow) < broken(soft), "a larger eta cracks more slowly")
+        check(start[2] > start[0] + 4, f"a larger eta cracks more slowly: {start}")
 
 
 def test_implicit_and_explicit():
     slant = (-1, 1, 0)
     with Box() as box:
         fast, slow = (box.run("implicit_explicit", 72, 8000, form=form) for form in ("implicit", "explicit"))
-        flood = box.run("implicit_explicit", 72, 8000, form="explicit", eta=1e-9)
-        print("  off the fibres:", round(turned(fast, slant)), round(turned(slow, slant)), " broken:", [round(broken(r), 3) for r in (fast, slow, flood)])
+        path = os.path.join(SOURCE, "scenes/solid/implicit_explicit.lua")
+        code, _, err = box.call("run", path, "--set", "particles=8000", "--set", "form=explicit", "--set", "eta=1e-9", "--quiet")
+        check(code == 1 and 'form = "implicit"' in err and "damage" in err, f"explicit at eta 1e-9 says what would work: {code} {err}")
+        print("  off the fibres:", round(turned(fast, slant)), round(turned(slow, slant)), " broken:", [round(broken(r), 3) for r in (fast, slow)])
         check(turned(fast, slant) < 15, f"implicit at eta 1e-9 follows the fibres: {fast['crack_normal']}")
         check(turned(slow, slant) < 15, f"explicit at eta 1e-3 follows the fibres: {slow['crack_normal']}")
-        check(broken(fast) > broken(slow) > 0, "a smaller eta runs further in the same time")
+        early = [box.series(run, "broken_fraction")[24] for run in (fast, slow)]
+        reach = max(y for (_, y, _), d in frames.damaged(fast) if d > 0.9)
+        print("  broken by frame 24:", [round(b, 4) for b in early], " highest broken:", round(reach, 3))
+        check(early[0] > 1.5 * early[1], f"a smaller eta runs sooner: {early}")
+        check(reach > 0.15, f"implicit at eta 1e-9 splits the block, up to the plate: {reach}")
         check(broken(fast) < 0.2, "and stays a crack")
 
 
 def test_bone():
     with Box() as box:
         axis, runs, tilt = (0, 1, 0), {}, {}
-        for variant in ("twist", "pull", "bend"):
-            run = runs[variant] = box.run("bone", 36, 8000, variant=variant)
+        for variant, length in (("twist", 16), ("pull", 40), ("bend", 16)):
+            run = runs[variant] = box.run("bone", length, 24000, variant=variant)
             # Damage's gradient in the shaft's skin: along the axis and around it. A spiral slants it the same way all around.
             pairs = []
             for (x, y, z), (gx, gy, gz) in gradients(frames.damaged(run), 1.3 * run["dx"], (0, 1, 2)):
-                if abs(y) < 0.12 and math.hypot(x, z) > 0.008:
+                if abs(y) < 0.11 and math.hypot(x, z) > 0.013:
                     pairs.append((gy, (gz * x - gx * z) / math.hypot(x, z)))
             tilt[variant] = between(principal(pairs), (1, 0))
             check(broken(run) > 0.01, f"{variant} breaks")
         print("  degrees of the spiral:", {v: round(a) for v, a in tilt.items()}, " of the normal from the axis:",
               {v: round(turned(r, axis)) for v, r in runs.items()})
-        check(20 < tilt["twist"] < 60, f"twist: a spiral: {tilt}")
-        check(tilt["pull"] < 10 and turned(runs["pull"], axis) < 20, f"pull: straight across: {tilt} {runs['pull']['crack_normal']}")
-        check(tilt["bend"] < 20 and 15 < turned(runs["bend"], axis) < 60, f"bend: a slant, no spiral: {tilt} {runs['bend']['crack_normal']}")
+        check(25 < tilt["twist"] < 60 and 30 < turned(runs["twist"], axis) < 60, f"twist: a spiral: {tilt} {runs['twist']['crack_normal']}")
+        check(tilt["pull"] < 10 and turned(runs["pull"], axis) < 12, f"pull: straight across: {tilt} {runs['pull']['crack_normal']}")
+        normal = runs["bend"]["crack_normal"]
+        check(tilt["bend"] < 10 and 18 < turned(runs["bend"], axis) < 60, f"bend: oblique, no spiral: {tilt} {normal}")
+        check(abs(normal[2]) < 0.2, f"and in the plane of the bending: {normal}")
+
+
+def test_fish():
+    with Box() as box:
+        runs = box.run("fish", None, 10000), box.run("fish", None, 10000, alpha=0, gamma=0)
+        tails, gaps = [], []
+        for run in runs:
+            cut = {i for i, d in zip(frames.read(run, 0, "id"), frames.read(run, 0, "damage")) if d > 0.5}
+            rest, last, n = frames.places(run, 0), frames.places(run, run["frames"]), run["frames"]
+            damage = dict(zip(map(int, frames.read(run, n, "id")), frames.read(run, n, "damage")))
+            tails.append(min((rest[i][0] for i, d in damage.items() if d > 0.9 and i not in cut), default=1.0))
+            # Slices between the back and the hands that hold no whole particle: what the hands have is off.
+            slices = {math.floor(last[i][1] / run["dx"]) for i, d in damage.items() if d < 0.5}
+            gaps.append(max(slices) - min(slices) + 1 - len(slices))
+        print("  normal", runs[0]["crack_normal"], " furthest towards the tail, with fibres and without:", [round(t, 3) for t in tails], " gaps:", gaps)
+        check(turned(runs[0], (0, 1, 0)) < 20, f"skin comes off along the fibres: {runs[0]['crack_normal']}")
+        check(turned(runs[1], (0, 1, 0)) > turned(runs[0], (0, 1, 0)) + 10, f"without fibres it tears across: {runs[1]['crack_normal']}")
+        check(tails[0] < tails[1] - 0.05, f"with fibres the peel runs further: {tails}")
+        check(gaps[0] == 0 and gaps[1] > 2, f"and stays on the fish, where without them a lump comes off: {gaps}")
+
+
+def stretches(run):
+    """|log| of the stretch between neighbouring cells of whole particles, sorted."""
+    rest, last, n, cells = frames.places(run, 0), frames.places(run, run["frames"]), run["frames"], {}
+    for i, d in zip(map(int, frames.read(run, n, "id")), frames.read(run, n, "damage")):
+        if d < 0.3:
+            cells.setdefault(tuple(math.floor(c / (1.5 * run["dx"])) for c in rest[i]), []).append(i)
+    middle = {key: [[sum(at[i][c] for i in ids) / len(ids) for c in range(3)] for at in (rest, last)] for key, ids in cells.items() if len(ids) > 5}
+    out = []
+    for (x, y, z), (here, there) in middle.items():
+        for key in ((x + 1, y, z), (x, y + 1, z), (x, y, z + 1)):
+            if key in middle:
+                out.append(abs(math.log(math.dist(there, middle[key][1]) / math.dist(here, middle[key][0]))))
+    return sorted(out)
+
+
+def test_heart():
+    with Box() as box:
+        left, middle = {}, {}
+        for variant in ("plastic", "elastic"):
+            run = box.run("heart", None, 5000, variant=variant)
+            strain = stretches(run)
+            left[variant] = strain[len(strain) // 2]
+            places = frames.places(run, run["frames"])
+            xs = sorted(x for x, _, _ in places.values())
+            middle[variant] = max(b - a for a, b in zip(xs, xs[1:]))
+            check(broken(run) > 0.005, f"{variant} breaks")
+        print("  strain left in what is whole, median:", {v: round(s, 3) for v, s in left.items()}, " widest gap:", {v: round(g, 3) for v, g in middle.items()})
+        check(min(middle.values()) > 0.1, f"both come apart in two: {middle}")
+        check(left["plastic"] > 0.04, f"plastic stays out of shape after the load: {left}")
+        check(left["elastic"] < 0.01, f"elastic springs back: {left}")
+
+
+def test_lance():
+    with Box() as box:
+        wound, arms, reach = {}, {}, {}
+        for variant in ("full", "isotropic"):
+            run = box.run("lance", None, 10000, variant=variant)
+            points = frames.damaged(run)
+            torso = [p for p, d in points if d > 0.9 and abs(p[0]) < 0.1 and -0.18 < p[1] < 0.2]
+            skin = [p for p in torso if p[2] < -0.04 and abs(p[0]) < 0.08]
+            wound[variant] = [max(p[c] for p in skin) - min(p[c] for p in skin) for c in (0, 1)]
+            reach[variant] = min(p[2] for p in torso), max(p[2] for p in torso)
+            arm = [d for (x, y, _), d in points if abs(x) > 0.1 and 0.08 < y < 0.2]
+            arms[variant] = sum(d > 0.9 for d in arm) / len(arm)
+        print("  width and height of the wound:", {v: [round(a, 3) for a in w] for v, w in wound.items()}, " from, to:", reach,
+              " broken of the arms:", {v: round(a, 2) for v, a in arms.items()})
+        check(all(a < -0.08 and b > 0.08 for a, b in reach.values()), f"the lance goes through: {reach}")
+        check(wound["full"][1] > 2 * wound["full"][0], f"along the fibres: a slit: {wound}")
+        check(wound["isotropic"][0] > 1.3 * wound["full"][0], f"everywhere: a wider one: {wound}")
+        check(arms["isotropic"] > 2.5 * arms["full"], f"and the arms tear off across their fibres: {arms}")
+
+
+def test_pff_compare():
+    slant, up = (-1, 1, 0), (0, 1, 0)
+    with Box() as box:
+        runs = {v: box.run("pff_compare", 144, 4000, variant=v) for v in ("isotropic", "pff", "anisotropic")}
+        print("  off straight, off the fibres:", {v: (round(turned(r, up)), round(turned(r, slant))) for v, r in runs.items()},
+              " broken:", {v: round(broken(r), 3) for v, r in runs.items()})
+        check(turned(runs["isotropic"], up) < 12, f"isotropic: straight on: {runs['isotropic']['crack_normal']}")
+        check(turned(runs["pff"], up) < 12, f"the phase field: straight on: {runs['pff']['crack_normal']}")
+        check(turned(runs["anisotropic"], slant) < 15, f"along the fibres: {runs['anisotropic']['crack_normal']}")
+        check("pff" in runs["pff"]["effects"] and "damage" not in runs["pff"]["effects"], "the phase field alone")
 
 
 def test_damage_disk():

@@ -203,7 +203,7 @@ static void threads_do_not_change_bits(void) {
     }
 }
 
-/* Fig. 22: a prism hung by its top, its fibres parallel or turned at random by up to 5°. Stiff elastic fibres lock when they are
+/* Fig. 22: a prism hung by its top, its fibres parallel or turned at random by up to 2°. Stiff elastic fibres lock when they are
  * perturbed; inextensible ones hang as the parallel ones do. */
 static const shape *prism(arena *a) {
     return shape_box(a, (const double[]){-0.5, -0.2, -0.2}, (const double[]){0.5, 0.2, 0.2});
@@ -222,7 +222,7 @@ static status perturbed(void *context, const double *x, int inputs, double *a, i
 /* How far the free end of the prism, held at the other, has sunk after a time. */
 static double sinking(double spread, bool inextensible) {
     scene *s = test_scene(prism, 100, 0.3, 1);
-    s->particles = 3000;
+    s->particles = 1500;
     s->transfer = TRANSFER_RPIC;
     s->bodies[0].fibres = (scene_fibres){.families = 1, .direction = {.outputs = 3, .call = perturbed, .context = &spread}};
     if (inextensible) test_set(s, "inextensible", NULL, 0);
@@ -238,8 +238,8 @@ static double sinking(double spread, bool inextensible) {
     int64_t n = simulation_get_plan(sim)->particles, used = 0;
     double *x = memory_allocate((size_t)n * 24), *rest = memory_allocate((size_t)n * 24), sum = 0;
     simulation_engine(sim, &state)->read(state, "position", rest);
-    while (simulation_time(sim) < 0.6 && simulation_advance(sim, NULL, &r) == STATUS_OK) {}
-    CHECK(simulation_time(sim) >= 0.6);
+    while (simulation_time(sim) < 2 && simulation_advance(sim, NULL, &r) == STATUS_OK) {}
+    CHECK(simulation_time(sim) >= 2);
     simulation_engine(sim, &state)->read(state, "position", x);
     for (int64_t i = 0; i < n; i++)
         if (rest[3 * i] > 0.4) sum += rest[3 * i + 1] - x[3 * i + 1], used++;
@@ -250,8 +250,8 @@ static double sinking(double spread, bool inextensible) {
 }
 
 static void perturbed_fibres_do_not_lock(void) {
-    double parallel = sinking(0, true), turned = sinking(0.05, true);
-    double soft_parallel = sinking(0, false), soft_turned = sinking(0.05, false);
+    double parallel = sinking(0, true), turned = sinking(0.035, true);
+    double soft_parallel = sinking(0, false), soft_turned = sinking(0.035, false);
     printf("  sinks by %.4g and %.4g; elastic fibres %.4g and %.4g\n", parallel, turned, soft_parallel, soft_turned);
     CHECK_ROW("AnisoMPM Fig. 22", "prism of perturbed inextensible fibres: sinking against that of parallel ones", 1, turned / parallel, 0.02);
     CHECK(fabs(soft_turned / soft_parallel - 1) > 0.02);

@@ -203,8 +203,8 @@ static void a_bar_in_tension_gives_back_E(void) {
     scene *s = test_scene(bar, E, nu, 1);
     s->bodies[0].discretisation = DISCRETISATION_TETRAHEDRA;
     s->dx = 0.25;
-    s->effects[EFFECT_damping].on = true;
-    s->effects[EFFECT_damping].value[0][0] = 1;
+    s->effects[EFFECT_mass_damping].on = true;
+    s->effects[EFFECT_mass_damping].value[0][0] = 1;
     for (int side = -1; side <= 1; side += 2) {
         double low[3] = {side < 0 ? -3 : 1.9, -2, -2}, high[3] = {side < 0 ? -1.9 : 3, 2, 2};
         s->grips[s->grip_count++] = (scene_grip){.shape = shape_box(s->memory, low, high), .stop = HUGE_VAL,
@@ -234,9 +234,9 @@ static void a_bar_in_tension_gives_back_E(void) {
 
 static void gravity_and_damping_act(void) {
     scene *s = cube_of(2, 0);
-    s->effects[EFFECT_gravity].on = s->effects[EFFECT_damping].on = true;
+    s->effects[EFFECT_gravity].on = s->effects[EFFECT_mass_damping].on = true;
     s->effects[EFFECT_gravity].value[0][1] = -9;
-    s->effects[EFFECT_damping].value[0][0] = 2;
+    s->effects[EFFECT_mass_damping].value[0][0] = 2;
     simulation *sim = test_simulation(s, 64, "auto", 1);
     report r;
     simulation_measures m;
@@ -255,8 +255,8 @@ static void gravity_and_damping_act(void) {
 static solid_measures recover(scene_function start, double gamma, int precision, int cells, double time) {
     scene *s = cube_of(cells, gamma);
     s->bodies[0].start = start;
-    s->effects[EFFECT_damping].on = true;
-    s->effects[EFFECT_damping].value[0][0] = 6;
+    s->effects[EFFECT_mass_damping].on = true;
+    s->effects[EFFECT_mass_damping].value[0][0] = 6;
     simulation *sim = test_simulation(s, precision, "auto", 2);
     report r;
     simulation_measures m;

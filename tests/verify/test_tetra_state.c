@@ -35,8 +35,8 @@ static scene *two_balls(void) {
     s->bodies[1].material = 1;
     s->bodies[1].start.outputs = 0;
     s->bodies[1].shape = shape_sphere(s->memory, (const double[]){2, 0, 0}, 0.6);
-    s->effects[EFFECT_gravity].on = s->effects[EFFECT_damping].on = true;
-    s->effects[EFFECT_gravity].value[0][1] = -3, s->effects[EFFECT_damping].value[0][0] = 0.5;
+    s->effects[EFFECT_gravity].on = s->effects[EFFECT_mass_damping].on = true;
+    s->effects[EFFECT_gravity].value[0][1] = -3, s->effects[EFFECT_mass_damping].value[0][0] = 0.5;
     s->grips[s->grip_count++] = (scene_grip){.shape = shape_sphere(s->memory, (const double[]){2, 0.6, 0}, 0.4), .stop = HUGE_VAL, .pivot = {2, 0, 0},
                                              .velocity = {.outputs = 3}, .spin = {.outputs = 3, .constant = {0, 2, 0}}};
     s->colliders[s->collider_count++] = (scene_collider){.shape = shape_half_space(s->memory, (const double[]){0, -0.65, 0}, (const double[]){0, 1, 0}),

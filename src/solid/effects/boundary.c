@@ -5,36 +5,16 @@
  * that impulse times the boundary's velocity. */
 #include "solid/state.h"
 
-#include <math.h>
-
-/* The velocity that a boundary leaves a node with, and how it holds the node; v is the node's, u the boundary's at that place, normal the
- * boundary's (untouched where it does not matter). */
-static hold_kind contact_velocity(const solid_boundary *b, const double rest[3], double dx, const double u[3], double v[3], double normal[3]) {
-    if (b->grip || b->contact == CONTACT_STICKY) {
-        for (int c = 0; c < 3; c++) v[c] = u[c];
-        return HOLD_FIXED;
+/* How a boundary that has left a node with a velocity holds it. */
+static hold_kind hold_of(const solid_boundary *b, contact_outcome outcome) {
+    bool separates = !b->grip && b->contact == CONTACT_SEPARATE;
+    switch (outcome) {
+    case OUTCOME_HELD: return HOLD_FIXED;
+    case OUTCOME_LEFT: return HOLD_CANDIDATE;
+    case OUTCOME_STUCK: return separates ? HOLD_STUCK : HOLD_FIXED;
+    case OUTCOME_SLID: break;
     }
-    double local[3];
-    shape_normal(b->shape, rest, 1e-3 * dx, local);
-    for (int row = 0; row < 3; row++) {
-        normal[row] = 0;
-        for (int c = 0; c < 3; c++) normal[row] += b->motion.rotation[row * 3 + c] * local[c];
-    }
-    double relative[3] = {v[0] - u[0], v[1] - u[1], v[2] - u[2]};
-    double normal_speed = relative[0] * normal[0] + relative[1] * normal[1] + relative[2] * normal[2];
-    if (b->contact == CONTACT_SEPARATE && normal_speed >= 0) return HOLD_CANDIDATE;
-    double tangent[3], tangent_speed = 0;
-    for (int c = 0; c < 3; c++) {
-        tangent[c] = relative[c] - normal_speed * normal[c];
-        tangent_speed += tangent[c] * tangent[c];
-    }
-    tangent_speed = sqrt(tangent_speed);
-    double lost = b->friction * fabs(normal_speed);
-    double keep = tangent_speed > lost ? 1 - lost / tangent_speed : 0;
-    for (int c = 0; c < 3; c++) v[c] = u[c] + keep * tangent[c];
-    bool stuck = keep == 0 && b->friction > 0;
-    if (b->contact == CONTACT_SEPARATE) return stuck ? HOLD_STUCK : HOLD_TOUCHING;
-    return stuck ? HOLD_FIXED : HOLD_PLANE;
+    return separates ? HOLD_TOUCHING : HOLD_PLANE;
 }
 
 /* Where boundaries overlap: a node that two of them hold in different planes cannot move; one that is only near a boundary is
@@ -56,7 +36,7 @@ static void apply_to_node(const solid_boundary *b, const double x[3], double dx,
     double u[3], v[3] = {(double)node[0], (double)node[1], (double)node[2]}, mass = (double)node[3], normal[3] = {0, 0, 0};
     double before[3] = {v[0], v[1], v[2]};
     rigid_motion_velocity(&b->motion, x, u);
-    hold_kind kind = contact_velocity(b, rest, dx, u, v, normal);
+    hold_kind kind = hold_of(b, rigid_boundary_velocity(b, rest, 1e-3 * dx, u, v, normal));
     if (hold) {
         node_hold now = {.wall = (real)(u[0] * normal[0] + u[1] * normal[1] + u[2] * normal[2]), .kind = (int32_t)kind};
         for (int c = 0; c < 3; c++) now.normal[c] = (real)normal[c], now.before[c] = (real)before[c];

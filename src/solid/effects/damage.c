@@ -183,16 +183,16 @@ SIMD_INLINE vec relaxation_limit(const real *c, vec d, vec H, vec spread) {
     return vec_max(vec_select(counts, rate * gap / (gap + OVERSHOOT), vec_all(0)), undriven);
 }
 
-/* The grid has solved for d; scratch->laplacian holds the increment. Then the history of the new F, for the next solve. */
+/* The grid has solved for d; scratch->laplacian holds l0² Δd of that. Then the history of the new F, for the next solve. */
 static void update_implicit(tile_work *w) {
     const solid_field *damage = &w->state->fields[w->state->damage_field];
     const solid_field *histories = &w->state->fields[w->state->history_field];
+    real rate = w->state->implicit_materials[w->tile->material].eta / w->dt;
     for (int k = 0; k < w->tile->pack_count; k++)
         for (int part = 0; part < PACK_PARTS; part++) {
             int32_t pack = w->tile->first_pack + k;
             vec d = vec_load(field_at(damage, pack, 0, part)), H = vec_load(field_at(histories, pack, 0, part));
-            vec increment = vec_load(scratch_at(w->scratch->laplacian, 1, k, 0, part));
-            d = vec_min(d + vec_max(increment, vec_all(0)), vec_all(1));
+            d = implicit_damage(d, H, vec_load(scratch_at(w->scratch->laplacian, 1, k, 0, part)), rate);
             vec_store(field_at(damage, pack, 0, part), d);
             vec_store(field_at(histories, pack, 0, part), history(w, pack, part, d, H));
         }

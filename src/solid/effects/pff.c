@@ -63,19 +63,20 @@ SIMD_INLINE vec tensile_energy(const real *c, mat3v F) {
     return vec_max(shear + vec_select(J >= 1, volume, vec_all(0)), vec_all(0));
 }
 
-/* The grid has solved for d; scratch->laplacian holds the increment. */
+/* The grid has solved for d; scratch->laplacian holds 4 l0² Δd of that. */
 static void update(tile_work *w) {
     const solid_field *damage = &w->state->fields[w->state->damage_field];
     const solid_field *histories = &w->state->fields[w->state->history_field];
     const real *c = w->constants;
     if (c[FROZEN] != 0) return;
+    real rate = w->state->implicit_materials[w->tile->material].eta / w->dt;
     for (int k = 0; k < w->tile->pack_count; k++)
         for (int part = 0; part < PACK_PARTS; part++) {
             int32_t pack = w->tile->first_pack + k;
             vec d = vec_load(field_at(damage, pack, 0, part)), H = vec_load(field_at(histories, pack, 0, part));
-            vec increment = vec_load(scratch_at(w->scratch->laplacian, 1, k, 0, part));
+            vec spread = vec_load(scratch_at(w->scratch->laplacian, 1, k, 0, part));
             vec driving = c[DRIVING] * tensile_energy(c, mat3v_load(&w->state->fields[FIELD_DEFORMATION], pack, part));
-            vec_store(field_at(damage, pack, 0, part), vec_min(d + vec_max(increment, vec_all(0)), vec_all(1)));
+            vec_store(field_at(damage, pack, 0, part), implicit_damage(d, H, spread, rate));
             vec_store(field_at(histories, pack, 0, part), vec_min(vec_max(driving, H), vec_all(DRIVING_LIMIT)));
         }
 }

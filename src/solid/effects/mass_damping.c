@@ -11,12 +11,12 @@ static void slow_down(const grid_work *w) {
 
 static const parameter parameters[] = {
     {.key = "rate", .unit = "1/time", .doc = "share of its speed that everything loses in a unit of time, while that is small", .maximum = 1e9,
-     .short_form = "damping = 0.5", .required = true},
+     .short_form = "mass_damping = 0.5", .required = true},
 };
 
 static const solid_stages stages = {.grid = slow_down};
 
-const effect SOLID_EFFECT(damping) = {
-    .name = "damping", .engine = ENGINE_SOLID, .scope = SCOPE_SCENE, .doc = "drag on all motion, for scenes that are to come to rest",
+const effect SOLID_EFFECT(mass_damping) = {
+    .name = "mass_damping", .engine = ENGINE_SOLID, .scope = SCOPE_SCENE, .doc = "drag on all motion, for scenes that are to come to rest",
     .reference = "METHOD.md section 3", .parameters = parameters, .parameter_count = 1, .stages = &stages,
 };

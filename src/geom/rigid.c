@@ -1,5 +1,5 @@
-/* Rigid motions: compiled once, in f64, for all variants. */
-#include "solid/solid.h"
+/* Rigid motions and boundaries. */
+#include "geom/rigid.h"
 
 #include <math.h>
 #include <string.h>
@@ -43,4 +43,30 @@ void rigid_motion_advance(rigid_motion *m, double dt) {
         for (int j = 0; j < 3; j++)
             next[3 * i + j] = step[3 * i] * m->rotation[j] + step[3 * i + 1] * m->rotation[3 + j] + step[3 * i + 2] * m->rotation[6 + j];
     memcpy(m->rotation, next, sizeof next);
+}
+
+contact_outcome rigid_boundary_velocity(const rigid_boundary *b, const double rest[3], double h, const double u[3], double v[3], double normal[3]) {
+    if (b->grip || b->contact == CONTACT_STICKY) {
+        for (int c = 0; c < 3; c++) v[c] = u[c];
+        return OUTCOME_HELD;
+    }
+    double local[3];
+    shape_normal(b->shape, rest, h, local);
+    for (int row = 0; row < 3; row++) {
+        normal[row] = 0;
+        for (int c = 0; c < 3; c++) normal[row] += b->motion.rotation[row * 3 + c] * local[c];
+    }
+    double relative[3] = {v[0] - u[0], v[1] - u[1], v[2] - u[2]};
+    double normal_speed = relative[0] * normal[0] + relative[1] * normal[1] + relative[2] * normal[2];
+    if (b->contact == CONTACT_SEPARATE && normal_speed >= 0) return OUTCOME_LEFT;
+    double tangent[3], tangent_speed = 0;
+    for (int c = 0; c < 3; c++) {
+        tangent[c] = relative[c] - normal_speed * normal[c];
+        tangent_speed += tangent[c] * tangent[c];
+    }
+    tangent_speed = sqrt(tangent_speed);
+    double lost = b->friction * fabs(normal_speed);
+    double keep = tangent_speed > lost ? 1 - lost / tangent_speed : 0;
+    for (int c = 0; c < 3; c++) v[c] = u[c] + keep * tangent[c];
+    return keep == 0 && b->friction > 0 ? OUTCOME_STUCK : OUTCOME_SLID;
 }

@@ -1,0 +1,9 @@
+# The verification of the sheet engine.
+foreach(name sheet_forces sheet_elastic sheet_diffusion sheet_fracture sheet_dynamics sheet_determinism)
+  if(EXISTS ${CMAKE_SOURCE_DIR}/tests/verify/test_${name}.c)
+    sunder_test(${name} ${CMAKE_SOURCE_DIR}/tests/verify/test_${name}.c sunder_sheet)
+  endif()
+endforeach()
+
+add_test(NAME sheet_scenes COMMAND python3 ${CMAKE_SOURCE_DIR}/tests/cases/test_sheet_scenes.py $<TARGET_FILE:sunder> ${CMAKE_SOURCE_DIR})
+set_tests_properties(sheet_scenes PROPERTIES LABELS long TIMEOUT 600)

@@ -1,0 +1,166 @@
+/* What happens to particles once their bonds have pulled: gravity, drag, grips, colliders, and the way to new places. */
+#include "base/threads.h"
+#include "sheet/state.h"
+
+#include <math.h>
+
+typedef struct pack_context {
+    sheet *state;
+    real dt;
+    void (*stage)(const pack_work *w);
+} pack_context;
+
+static void visit_group(void *context, int64_t group, int worker) {
+    (void)worker;
+    const pack_context *c = context;
+    sheet *s = c->state;
+    int32_t last = (int32_t)(group + 1) * GROUP_PACKS;
+    for (int32_t p = (int32_t)group * GROUP_PACKS; p < last && p < s->pack_count; p++) {
+        pack_work w = {.state = s, .pack = p, .body = &s->bodies[s->packs[p].body], .dt = c->dt, .result = &s->results[group]};
+        c->stage(&w);
+    }
+}
+
+void sheet_for_packs(sheet *s, real dt, void (*stage)(const pack_work *w)) {
+    pack_context c = {s, dt, stage};
+    parallel_for(s->threads, s->group_count, 4, visit_group, &c);
+}
+
+void sheet_break_bonds(sheet *s, int64_t first, unsigned lanes, group_result *result) {
+    for (int i = 0; i < VEC_LANES; i++) {
+        if (!(lanes >> i & 1)) continue;
+        s->stiffness[first + i] = 0;
+        s->history[first + i] = BROKEN;
+        if (s->conduct) s->conduct[first + i] = 0;
+        if (s->dilation) s->dilation[first + i] = 0;
+        if (s->laplace) s->laplace[first + i] = 0;
+        result->broken++;
+    }
+}
+
+/* ---- boundaries -------------------------------------------------------------------------------------------------- */
+
+/* A grip takes the particles that are inside when it starts and keeps them until it stops; they move with it, wherever it goes. */
+void sheet_take_hold(sheet *s) {
+    for (int g = 0; g < s->definition.boundary_count; g++) {
+        const rigid_boundary *b = &s->definition.boundaries[g];
+        if (!b->grip || b->motion.active == s->was_active[g]) continue;
+        s->was_active[g] = b->motion.active;
+        for (int64_t i = 0; i < s->count; i++) {
+            int64_t at = s->place[i];
+            const real *node = s->node + at * NODE;
+            double x[3] = {coordinate_of(node, 0), coordinate_of(node, 1), coordinate_of(node, 2)}, rest[3];
+            if (!b->motion.active) {
+                if (s->holder[at] == g + 1) s->holder[at] = 0;
+                continue;
+            }
+            rigid_motion_to_rest(&b->motion, x, rest);
+            if (shape_distance(b->shape, rest) < 0) s->holder[at] = (uint8_t)(g + 1);
+        }
+    }
+}
+
+static void set_velocity(const pack_work *w, int lane, const double u[3], const double v[3]) {
+    sheet *s = w->state;
+    double mass = (double)s->area[(int64_t)w->pack * PACK + lane] * w->body->surface_density;
+    for (int c = 0; c < 3; c++) {
+        real *own = s->velocity + ((int64_t)w->pack * 3 + c) * PACK + lane;
+        double impulse = mass * (v[c] - (double)*own);
+        w->result->grip_impulse[c] += impulse;
+        w->result->grip_work += impulse * u[c];
+        *own = (real)v[c];
+    }
+}
+
+static void place_of(const pack_work *w, int lane, double x[3]) {
+    const real *node = node_at(w->state, w->pack, lane);
+    for (int c = 0; c < 3; c++) x[c] = coordinate_of(node, c);
+}
+
+static void move_held(const pack_work *w) {
+    const sheet *s = w->state;
+    for (int lane = 0; lane < s->packs[w->pack].count; lane++) {
+        int holder = s->holder[(int64_t)w->pack * PACK + lane];
+        if (!holder) continue;
+        double x[3], u[3];
+        place_of(w, lane, x);
+        rigid_motion_velocity(&s->definition.boundaries[holder - 1].motion, x, u);
+        set_velocity(w, lane, u, u);
+    }
+}
+
+/* A sphere around a pack: colliders further off than its radius touch none of it. */
+static double pack_reach(const pack_work *w, double center[3]) {
+    int count = w->state->packs[w->pack].count;
+    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, x[3], square = 0;
+    for (int lane = 0; lane < count; lane++) {
+        place_of(w, lane, x);
+        for (int c = 0; c < 3; c++) low[c] = fmin(low[c], x[c]), high[c] = fmax(high[c], x[c]);
+    }
+    for (int c = 0; c < 3; c++) {
+        center[c] = 0.5 * (low[c] + high[c]);
+        square += 0.25 * (high[c] - low[c]) * (high[c] - low[c]);
+    }
+    return sqrt(square);
+}
+
+static void collide(const pack_work *w) {
+    const sheet *s = w->state;
+    double center[3], rest[3], x[3], u[3], v[3], normal[3], reach = -1;
+    double h = 1e-3 * s->definition.bodies[s->packs[w->pack].body].spacing;
+    for (int k = 0; k < s->definition.boundary_count; k++) {
+        const rigid_boundary *b = &s->definition.boundaries[k];
+        if (b->grip || !b->motion.active) continue;
+        if (reach < 0) reach = pack_reach(w, center);
+        rigid_motion_to_rest(&b->motion, center, rest);
+        if (shape_distance(b->shape, rest) > reach) continue;
+        for (int lane = 0; lane < s->packs[w->pack].count; lane++) {
+            place_of(w, lane, x);
+            rigid_motion_to_rest(&b->motion, x, rest);
+            if (s->holder[(int64_t)w->pack * PACK + lane] || shape_distance(b->shape, rest) >= 0) continue;
+            for (int c = 0; c < 3; c++) v[c] = (double)s->velocity[((int64_t)w->pack * 3 + c) * PACK + lane];
+            rigid_motion_velocity(&b->motion, x, u);
+            (void)rigid_boundary_velocity(b, rest, h, u, v, normal);
+            set_velocity(w, lane, u, v);
+        }
+    }
+}
+
+/* ---- positions --------------------------------------------------------------------------------------------------- */
+
+/* high + low + step, with high the rounded sum: the error of the addition is kept (Knuth's two-sum). */
+static void move(const pack_work *w) {
+    sheet *s = w->state;
+    real farthest = (real)(0.5 * s->definition.bodies[s->packs[w->pack].body].spacing);
+    for (int lane = 0; lane < s->packs[w->pack].count; lane++) {
+        real *node = node_at(s, w->pack, lane);
+        bool good = isfinite(node[3]);
+        for (int c = 0; c < 3; c++) {
+            real step = w->dt * s->velocity[((int64_t)w->pack * 3 + c) * PACK + lane], moved = node[NODE_LOW + c] + step;
+            real sum = node[c] + moved, back = sum - node[c];
+            node[NODE_LOW + c] = (node[c] - (sum - back)) + (moved - back);
+            node[c] = sum;
+            good = good && step < farthest && step > -farthest;
+        }
+        if (!good && !w->result->fault) w->result->fault = w->pack * PACK + lane + 1;
+    }
+}
+
+static void advance_pack(const pack_work *w) {
+    sheet *s = w->state;
+    for (int c = 0; c < 3; c++) {
+        real *v = s->velocity + ((int64_t)w->pack * 3 + c) * PACK, step = (real)s->definition.gravity[c] * w->dt;
+        for (int i = 0; i < PACK; i++) v[i] += step;
+    }
+    for (int e = 0; e < SHEET_EFFECTS; e++)
+        if ((s->mask >> e & 1) && sheet_effect_table[e]->sheet->velocity) sheet_effect_table[e]->sheet->velocity(w);
+    if (s->definition.boundary_count) {
+        move_held(w);
+        collide(w);
+    }
+    move(w);
+}
+
+void sheet_advance(sheet *s, real dt) {
+    sheet_for_packs(s, dt, advance_pack);
+}

@@ -1,0 +1,134 @@
+/* One face for both engines: a simulation has one or the other. */
+#include "base/memory.h"
+#include "sim/internal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+rigid_boundary *engine_boundaries(const simulation *s) {
+    return s->sheet ? s->sheets->boundaries(s->sheet) : s->engine->boundaries(s->solid);
+}
+
+void engine_limits(const simulation *s, double limit[EFFECT_LIMIT]) {
+    for (int e = 0; e < EFFECT_LIMIT; e++) limit[e] = HUGE_VAL;
+    if (s->sheet) s->sheets->limits(s->sheet, limit + sheet_effects_first());
+    else s->engine->limits(s->solid, limit);
+    /* The momentum limit shrinks by the scene's cfl; others are limits as they stand. */
+    for (int e = 0; e < s->plan.effect_count; e++) {
+        const effect *table = s->plan.effects[e];
+        if (strcmp(table->name, "elastic") == 0 || effect_supplies(table, SHEET_ELASTICITY)) limit[e] *= s->scene->cfl;
+    }
+}
+
+status engine_step(simulation *s, double dt, report *r) {
+    solid_fault fault;
+    sheet_fault sheet_trouble;
+    return s->sheet ? s->sheets->step(s->sheet, s->time, dt, &sheet_trouble, r) : s->engine->step(s->solid, dt, &fault, r);
+}
+
+status engine_begin_frame(simulation *s, report *r) {
+    return s->sheet ? STATUS_OK : s->engine->sort(s->solid, r);
+}
+
+void engine_end_frame(simulation *s) {
+    if (s->sheet) s->sheets->settle(s->sheet, s->time);
+}
+
+double engine_bytes(const simulation *s) {
+    return s->sheet ? s->sheets->bytes_per_particle(s->sheet) : s->engine->bytes_per_particle(s->solid);
+}
+
+status engine_save(const simulation *s, record_list *list, report *r) {
+    return s->sheet ? s->sheets->save(s->sheet, list, r) : s->engine->save(s->solid, list, r);
+}
+
+status engine_restore(simulation *s, const record_list *list, report *r) {
+    return s->sheet ? s->sheets->restore(s->sheet, list, r) : s->engine->restore(s->solid, list, r);
+}
+
+int simulation_read(const simulation *s, const char *field, double *out) {
+    if (s->sheet) return out ? s->sheets->read(s->sheet, field, out) : s->sheets->components(s->sheet, field);
+    return out ? s->engine->read(s->solid, field, out) : s->engine->components(s->solid, field);
+}
+
+const char *simulation_picture_field(const simulation *s) {
+    if (!s->sheet) return "damage";
+    return simulation_read(s, "diffused", NULL) ? "diffused" : "broken";
+}
+
+/* What a sheet has in common with a solid, so that ledgers and screens need not tell them apart. */
+static void share_measures(const sheet_measures *from, solid_measures *to) {
+    *to = (solid_measures){.mass = from->mass, .kinetic = from->kinetic, .elastic = from->elastic, .gravitational = from->gravitational,
+                           .grip_work = from->grip_work, .damage_mean = from->broken_mean, .damage_max = from->broken_max,
+                           .determinant_min = 1, .determinant_max = 1, .speed_max = from->speed_max};
+    memcpy(to->momentum, from->momentum, sizeof to->momentum);
+    memcpy(to->angular_momentum, from->angular_momentum, sizeof to->angular_momentum);
+    memcpy(to->grip_impulse, from->grip_impulse, sizeof to->grip_impulse);
+    if (from->bonds_total > 0) to->broken_fraction = (double)from->bonds_broken / (double)from->bonds_total;
+    to->histogram[0] = 1;
+}
+
+status engine_measure(const simulation *s, simulation_measures *m, report *r) {
+    if (!s->sheet) return s->engine->measure(s->solid, &m->solid, r);
+    m->has_sheet = true;
+    status code = s->sheets->measure(s->sheet, &m->sheet, r);
+    if (code == STATUS_OK) share_measures(&m->sheet, &m->solid);
+    return code;
+}
+
+/* ---- making ------------------------------------------------------------------------------------------------------ */
+
+static void motion_default(rigid_motion *m, const double pivot[3]) {
+    *m = (rigid_motion){.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    memcpy(m->pivot, pivot, sizeof m->pivot);
+}
+
+int engine_define_boundaries(const scene *s, rigid_boundary *out) {
+    int count = 0;
+    for (int g = 0; g < s->grip_count; g++, count++) {
+        out[count] = (rigid_boundary){.shape = s->grips[g].shape, .grip = true};
+        motion_default(&out[count].motion, s->grips[g].pivot);
+    }
+    for (int c = 0; c < s->collider_count; c++, count++) {
+        out[count] = (rigid_boundary){.shape = s->colliders[c].shape, .contact = s->colliders[c].contact, .friction = s->colliders[c].friction};
+        motion_default(&out[count].motion, s->colliders[c].pivot);
+    }
+    return count;
+}
+
+/* Effects that any sheet's material names, by index in the sheet engine's list. */
+static uint32_t sheet_mask(const scene *s) {
+    uint32_t mask = 0;
+    int first = sheet_effects_first(), count;
+    (void)effect_catalogue(&count);
+    for (int k = 0; k < s->sheet_count; k++)
+        for (int e = first; e < count; e++)
+            if (s->materials[s->sheets[k].material].effects[e].on) mask |= 1u << (e - first);
+    return mask;
+}
+
+status engine_create_sheet(simulation *s, int threads, report *r) {
+    const scene *from = s->scene;
+    const sheet_particles *p = &s->sheet_points;
+    sheet_definition *d = memory_allocate(sizeof *d);
+    if (!d) return report_set(r, STATUS_SYSTEM, "out of memory for the plan");
+    *d = (sheet_definition){.threads = threads, .effect_mask = sheet_mask(from), .material_count = from->material_count, .body_count = p->body_count,
+                            .notch_count = p->notch_count, .source_count = p->source_count, .count = p->count, .rest = p->rest,
+                            .position = p->position, .velocity = p->velocity, .area = p->area, .grain = p->grain, .protected = p->protected};
+    for (int m = 0; m < from->material_count; m++)
+        d->materials[m] = (sheet_material){.density = from->materials[m].density, .effects = from->materials[m].effects + sheet_effects_first()};
+    memcpy(d->bodies, p->bodies, sizeof p->bodies);
+    memcpy(d->notches, p->notches, sizeof p->notches);
+    memcpy(d->sources, p->sources, sizeof p->sources);
+    const effect_values *gravity = &from->effects[effect_index("gravity")];
+    if (gravity->on) memcpy(d->gravity, gravity->value[0], sizeof d->gravity);
+    d->boundary_count = engine_define_boundaries(from, d->boundaries);
+    report_clear(r);
+    s->sheet = s->sheets->create(d, r);
+    status code = s->sheet ? STATUS_OK : r->code;
+    if (code == STATUS_INPUT && !r->file[0]) snprintf(r->file, sizeof r->file, "%s", from->file);
+    if (code == STATUS_OK) s->plan.mask = d->effect_mask << sheet_effects_first();
+    memory_free(d, sizeof *d);
+    return code;
+}

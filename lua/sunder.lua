@@ -59,6 +59,9 @@ end
 ---@field fibres? Fibres
 ---@field velocity? OfPlace  at the start; at rest if absent
 ---@field sampling? "lattice"|"jittered"|"poisson"  "jittered" if absent
+---@field discretisation? "particles"|"tetrahedra"  "particles" if absent
+---@field mesher? "lattice"|"gmsh"  of tetrahedra: a lattice in any shape ("lattice" if absent), or Gmsh within a mesh of triangles
+---@field start? Vector|fun(x: number, y: number, z: number): number, number, number  where a vertex is at time 0; tetrahedra only
 ---@field notches? Shape[]  what lies inside starts broken; for a gap without material subtract a shape: `shape - cut`
 
 --- A cut that a sheet has from the start: the straight line from … to, or a thin shape.
@@ -142,6 +145,7 @@ end
 ---@field laplacian? "quadratic"|"cubic"
 ---@field domain? { min: Vector, max: Vector }
 ---@field gravity? Vector
+---@field mass_damping? number
 ---@field solids? Solid[]
 ---@field sheets? Sheet[]  instead of solids
 ---@field grips? Grip[]

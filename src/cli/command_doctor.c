@@ -3,6 +3,7 @@
 
 #include "base/json.h"
 #include "base/threads.h"
+#include "geom/tetrahedra.h"
 #include "solid/solid.h"
 #include "store/ledger.h"
 #include "tui/tui.h"
@@ -49,6 +50,10 @@ static void add_libraries(doctor_report *d) {
     add(d, true, "sqlite", "%s", sqlite3_libversion());
     add(d, true, "hdf5", "%u.%u.%u", major, minor, release);
     add(d, true, "ncurses", "%s", curses_version());
+    report r;
+    const char *gmsh = tetrahedra_gmsh_version(&r);
+    if (gmsh) add(d, true, "gmsh", "%s", gmsh);
+    else add(d, true, "gmsh", "not found (package libgmsh-dev: tetrahedra within triangle meshes)");
 }
 
 /* Programs that commands may call, with the Debian package of each. */

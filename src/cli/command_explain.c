@@ -42,6 +42,7 @@ static void print_text(const simulation_plan *p, const scene *s, const cost *c) 
     printf("%s\n\n", s->title[0] ? s->title : s->file);
     printf("  particles  %lld  spacing %.4g  dx %.4g  f%d %s, %d threads\n", (long long)p->particles, p->spacing, p->dx, p->precision,
            p->simd, p->threads);
+    if (p->tetrahedra) printf("  elements   %lld tetrahedra, of which the particles are the vertices; there is no grid\n", (long long)p->tetrahedra);
     printf("  bodies     ");
     for (int b = 0; b < s->body_count; b++) {
         char text[160];
@@ -104,6 +105,7 @@ static void print_json(const simulation_plan *p, const scene *s, const cost *c) 
     json_member_number(&w, "dt", p->dt);
     json_member_number(&w, "dx", p->dx);
     json_member_integer(&w, "particles", p->particles);
+    json_member_integer(&w, "tetrahedra", p->tetrahedra);
     json_member_number(&w, "predicted_steps", c->steps);
     json_member_number(&w, "predicted_seconds", c->seconds);
     json_object_end(&w);

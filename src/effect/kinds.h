@@ -8,4 +8,10 @@ typedef enum transfer_kind { TRANSFER_APIC, TRANSFER_RPIC, TRANSFER_PIC, TRANSFE
 /* B-splines. */
 typedef enum kernel_kind { KERNEL_QUADRATIC, KERNEL_CUBIC } kernel_kind;
 
+/* What a body is made of: material points on a grid, or linear tetrahedra whose F comes from the mesh. */
+typedef enum discretisation_kind { DISCRETISATION_PARTICLES, DISCRETISATION_TETRAHEDRA } discretisation_kind;
+
+/* Where tetrahedra come from: a lattice in any shape, or Gmsh within a triangle mesh. */
+typedef enum mesher_kind { MESHER_LATTICE, MESHER_GMSH } mesher_kind;
+
 #endif

@@ -55,6 +55,10 @@ status mesh_orient(const char *file, mesh *m, int64_t *turned, report *r);
  * where one is), has edges with no inside, or encloses nothing; STATUS_SYSTEM. `facts` describes the mesh as it is now. */
 status mesh_make_solid(const char *file, mesh *m, mesh_report *facts, report *r);
 
+/* Cuts triangles until no side is longer than `longest`: the surface stays what it is, neighbours agree. Errors: STATUS_INPUT when that gives too many
+ * triangles, STATUS_SYSTEM; the mesh is then as far as it came. */
+status mesh_cut_long_sides(mesh *m, double longest, report *r);
+
 /* x ↦ rotation · (scale · x) + translation for every vertex; rotation is row-major. */
 void mesh_transform(mesh *m, const double rotation[9], double scale, const double translation[3]);
 

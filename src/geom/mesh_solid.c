@@ -12,8 +12,9 @@ struct mesh_solid {
     mesh_tree tree;
     mesh_columns columns;
     mesh_far far;
-    int64_t vertices;
-    double *vertex; // [vertices][3]
+    int64_t vertices, triangles;
+    double *vertex;    // [vertices][3]
+    int32_t *triangle; // [triangles][3]
 };
 
 static double exact_distance(const void *context, const double x[3]) {
@@ -40,8 +41,12 @@ const mesh_solid *mesh_solid_create(arena *a, const mesh *m) {
     size_t bytes = (size_t)m->vertex_count * 3 * sizeof *s->vertex;
     s->vertices = m->vertex_count;
     s->vertex = arena_allocate(a, bytes);
-    if (!s->vertex) return NULL;
+    size_t corners = (size_t)m->triangle_count * 3 * sizeof *s->triangle;
+    s->triangles = m->triangle_count;
+    s->triangle = arena_allocate(a, corners);
+    if (!s->vertex || !s->triangle) return NULL;
     memcpy(s->vertex, m->vertex, bytes);
+    memcpy(s->triangle, m->triangle, corners);
     return sample_far(a, s) ? s : NULL;
 }
 
@@ -58,4 +63,18 @@ double mesh_solid_support(const mesh_solid *s, const double direction[3]) {
 
 int64_t mesh_solid_triangles(const mesh_solid *s) {
     return s->tree.triangles;
+}
+
+status mesh_solid_copy(const mesh_solid *s, mesh *out, report *r) {
+    size_t vertices = (size_t)s->vertices, triangles = (size_t)s->triangles;
+    *out = (mesh){.vertex = memory_allocate_array(vertices, 3 * sizeof(double)), .triangle = memory_allocate_array(triangles, 3 * sizeof(int32_t))};
+    if (out->vertex) out->vertex_count = out->vertex_capacity = s->vertices;
+    if (out->triangle) out->triangle_count = out->triangle_capacity = s->triangles;
+    if (!out->vertex || !out->triangle) {
+        mesh_free(out);
+        return report_set(r, STATUS_SYSTEM, "out of memory for a copy of %zu triangles", triangles);
+    }
+    memcpy(out->vertex, s->vertex, vertices * 3 * sizeof *out->vertex);
+    memcpy(out->triangle, s->triangle, triangles * 3 * sizeof *out->triangle);
+    return STATUS_OK;
 }

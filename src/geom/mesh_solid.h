@@ -23,4 +23,7 @@ double mesh_solid_support(const mesh_solid *s, const double direction[3]);
 
 int64_t mesh_solid_triangles(const mesh_solid *s);
 
+/* The triangles themselves; free with mesh_free. Errors: memory. */
+status mesh_solid_copy(const mesh_solid *s, mesh *out, report *r);
+
 #endif

@@ -102,6 +102,18 @@ const shape *shape_mesh(arena *a, const mesh *m, const char *name) {
     return s->mesh.solid && s->mesh.name ? s : NULL;
 }
 
+bool shape_is_mesh(const shape *s) {
+    while (s->kind == SHAPE_TRANSFORM) s = s->children[0];
+    return s->kind == SHAPE_MESH;
+}
+
+status shape_triangles(const shape *s, mesh *out, report *r) {
+    if (s->kind == SHAPE_MESH) return mesh_solid_copy(s->mesh.solid, out, r);
+    status code = shape_triangles(s->children[0], out, r);
+    if (code == STATUS_OK) mesh_transform(out, s->transform.rotation, s->transform.scale, s->transform.translation);
+    return code;
+}
+
 /* ---- trees --------------------------------------------------------------------------------------------------------
  */
 

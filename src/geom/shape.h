@@ -63,6 +63,12 @@ void shape_bounds(const shape *s, double minimum[3], double maximum[3]);
  * thinner than a cell and oblique to the axes come out too thick). Returns 0 for an unbounded shape. */
 double shape_volume(const shape *s, int cells);
 
+/* Whether the shape is a mesh, perhaps moved, and so has triangles of its own. */
+bool shape_is_mesh(const shape *s);
+
+/* Those triangles, where they are now; free with mesh_free. Errors: STATUS_SYSTEM out of memory. Only of a shape that is a mesh. */
+status shape_triangles(const shape *s, mesh *out, report *r);
+
 /* One line of text that describes the tree, for `explain`: "difference(cylinder r=0.3 l=2, …)". What does not
  * fit ends in an ellipsis. */
 void shape_describe(const shape *s, char *text, size_t size);

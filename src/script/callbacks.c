@@ -220,7 +220,7 @@ static void try_fibres(script *s, scene_fibres *f, double points[PLACE_CALLS][3]
         if (!try_once(s, &f->direction, points[i], 3)) return;
 }
 
-static void try_velocity(script *s, const scene_function *f, double points[PLACE_CALLS][3], int count) {
+static void try_places(script *s, const scene_function *f, double points[PLACE_CALLS][3], int count) {
     if (!is_lua(f)) return;
     for (int i = 0; i < count; i++)
         if (!try_once(s, f, points[i], 3)) return;
@@ -230,11 +230,12 @@ void try_functions(script *s) {
     scene *sc = s->scene;
     for (int i = 0; i < sc->body_count; i++) {
         scene_body *b = &sc->bodies[i];
-        if (!b->shape || (!is_lua(&b->velocity) && !is_lua(&b->fibres.direction))) continue;
+        if (!b->shape || (!is_lua(&b->velocity) && !is_lua(&b->start) && !is_lua(&b->fibres.direction))) continue;
         double points[PLACE_CALLS][3];
         int count = points_inside(b->shape, points);
         try_fibres(s, &b->fibres, points, count);
-        try_velocity(s, &b->velocity, points, count);
+        try_places(s, &b->velocity, points, count);
+        try_places(s, &b->start, points, count);
     }
     for (int i = 0; i < sc->sheet_count; i++) {
         scene_sheet *b = &sc->sheets[i];
@@ -242,8 +243,8 @@ void try_functions(script *s) {
         double points[PLACE_CALLS][3];
         int count = points_inside(b->region.shape, points);
         try_fibres(s, &b->grain, points, count);
-        try_velocity(s, &b->velocity, points, count);
-        for (int k = 0; k < b->source_count; k++) try_velocity(s, &b->sources[k].value, points, count);
+        try_places(s, &b->velocity, points, count);
+        for (int k = 0; k < b->source_count; k++) try_places(s, &b->sources[k].value, points, count);
     }
     for (int i = 0; i < sc->grip_count; i++) {
         scene_grip *g = &sc->grips[i];

@@ -8,6 +8,10 @@
 #include <string.h>
 
 static const char *const contacts[] = {"sticky", "slip", "separate", NULL};
+static const char *const discretisations[] = {"particles", "tetrahedra", NULL};
+_Static_assert(DISCRETISATION_PARTICLES == 0 && DISCRETISATION_TETRAHEDRA == 1, "order of `discretisations`");
+static const char *const meshers[] = {"lattice", "gmsh", NULL};
+_Static_assert(MESHER_LATTICE == 0 && MESHER_GMSH == 1, "order of `meshers`");
 static const char *const samplings[] = {"lattice", "jittered", "poisson", NULL};
 _Static_assert(CONTACT_STICKY == 0 && CONTACT_SLIP == 1 && CONTACT_SEPARATE == 2, "order of `contacts`");
 _Static_assert(SAMPLING_LATTICE == 0 && SAMPLING_JITTERED == 1 && SAMPLING_POISSON == 2, "order of `samplings`");
@@ -93,21 +97,26 @@ static const shape *read_notches(script *s, int index, const place *p) {
 
 static void read_solid(script *s, int index, const place *p, int number) {
     char name[SCRIPT_TEXT] = "";
-    double sampling = SAMPLING_JITTERED, middle[3];
+    double sampling = SAMPLING_JITTERED, discretisation = DISCRETISATION_PARTICLES, mesher = MESHER_LATTICE, middle[3];
     field fields[] = {{.key = "name", .kind = FIELD_TEXT, .text = name},
                       {.key = "shape", .kind = FIELD_OTHER, .required = true},
                       {.key = "material", .kind = FIELD_OTHER},
                       {.key = "fibres", .kind = FIELD_OTHER},
                       {.key = "velocity", .kind = FIELD_OTHER},
                       {.key = "notches", .kind = FIELD_OTHER},
-                      {.key = "sampling", .kind = FIELD_CHOICE, .choices = samplings, .number = &sampling}};
+                      {.key = "sampling", .kind = FIELD_CHOICE, .choices = samplings, .number = &sampling},
+                      {.key = "discretisation", .kind = FIELD_CHOICE, .choices = discretisations, .number = &discretisation},
+                      {.key = "mesher", .kind = FIELD_CHOICE, .choices = meshers, .number = &mesher},
+                      {.key = "start", .kind = FIELD_OTHER}};
     scene_body *b = &s->scene->bodies[s->scene->body_count];
     s->body_places[s->scene->body_count++] = *p;
     *b = (scene_body){.material = -1};
-    bool table = read_fields(s, index, p, fields, 7) || lua_istable(s->L, index);
+    bool table = read_fields(s, index, p, fields, sizeof fields / sizeof *fields) || lua_istable(s->L, index);
     copy_name(s, p, name, "solid", number, b->name);
     if (!table) return;
     b->sampling = (sampling_kind)sampling;
+    b->discretisation = (discretisation_kind)discretisation;
+    b->mesher = (mesher_kind)mesher;
     b->material = read_body_material(s, index, p, b->name);
     if (fields[1].given && (b->shape = read_shape_field(s, index, p)) && !is_bounded(b->shape, middle)) {
         place at = place_key(p, "shape");
@@ -117,6 +126,7 @@ static void read_solid(script *s, int index, const place *p, int number) {
     if (push_value(s->L, index, "fibres")) read_fibres(s, -1, &at, b->shape, &b->fibres);
     lua_pop(s->L, 1);
     function_field(s, index, p, "velocity", &b->velocity);
+    function_field(s, index, p, "start", &b->start);
     at = place_key(p, "notches");
     if (push_value(s->L, index, "notches")) b->notches = read_notches(s, lua_gettop(s->L), &at);
     lua_pop(s->L, 1);

@@ -42,14 +42,16 @@ static status allocate(body_particles *p, bool fibre1, bool fibre2, bool notched
 }
 
 void bodies_free(body_particles *p) {
-    size_t n = (size_t)p->count, row_bytes = 3 * sizeof(double) * n;
+    size_t n = (size_t)p->count, owners = p->element_count ? (size_t)p->element_count : n, row_bytes = 3 * sizeof(double) * n;
     memory_free(p->position, row_bytes);
     memory_free(p->velocity, row_bytes);
+    memory_free(p->start, row_bytes);
     memory_free(p->volume, n * sizeof(double));
-    memory_free(p->material, n);
+    memory_free(p->material, owners);
     memory_free(p->body, n);
-    memory_free(p->fibre1, row_bytes);
-    memory_free(p->fibre2, row_bytes);
+    memory_free(p->fibre1, 3 * sizeof(double) * owners);
+    memory_free(p->fibre2, 3 * sizeof(double) * owners);
+    memory_free(p->corner, 4 * sizeof(int32_t) * (size_t)p->element_count);
     memory_free(p->damage, n * sizeof(double));
     memset(p, 0, sizeof *p);
 }
@@ -61,8 +63,7 @@ static bool is_protected(const scene *s, const double x[3]) {
     return false;
 }
 
-static status set_fibres(const scene *s, const scene_body *b, body_particles *p, int64_t i, report *r) {
-    const double *x = p->position + 3 * i;
+status bodies_set_fibres(const scene *s, const scene_body *b, const double x[3], body_particles *p, int64_t i, report *r) {
     double direction[6] = {1, 0, 0, 0, 1, 0};
     if (b->fibres.families > 0) {
         memset(direction + 3, 0, 3 * sizeof *direction);
@@ -100,7 +101,7 @@ static status fill_body(const scene *s, int body, const point_set *points, doubl
         p->body[i] = (uint8_t)body;
         p->material[i] = (uint8_t)(b->material + (is_protected(s, p->position + 3 * i) ? s->material_count : 0));
         if (b->velocity.outputs) code = scene_function_evaluate(&b->velocity, p->position + 3 * i, 3, p->velocity + 3 * i, r);
-        if (code == STATUS_OK && p->fibre1) code = set_fibres(s, b, p, i, r);
+        if (code == STATUS_OK && p->fibre1) code = bodies_set_fibres(s, b, p->position + 3 * i, p, i, r);
     }
     if (code == STATUS_OK && b->notches) code = cut_notches(s, b, first, points->count, p, r);
     return code;
@@ -112,6 +113,10 @@ status bodies_sample(const scene *s, body_particles *out, report *r) {
     memset(points, 0, sizeof points);
     memset(out, 0, sizeof *out);
     status code = choose_spacing(s, volumes, out, r);
+    if (code == STATUS_OK && scene_is_tetrahedra(s)) {
+        out->dx = out->spacing = s->dx > 0 ? s->dx : out->spacing;
+        return tetra_bodies_fill(s, out, r);
+    }
     int families = 0;
     bool notched = false;
     for (int b = 0; b < s->body_count && code == STATUS_OK; b++) {

@@ -13,7 +13,17 @@ typedef struct body_particles {
     double *fibre1, *fibre2;     // [count][3], NULL when no body has that family
     double *damage;              // [count], 1 inside a notch, else 0; NULL when no body has notches
     uint8_t *material, *body;    // [count]; material index, plus the number of materials where a grip protects the particle
+    /* Bodies of tetrahedra: particles are vertices; fibres and materials are the elements', [element_count]. */
+    int64_t element_count; // 0: particles
+    int32_t *corner;       // [element_count][4]
+    double *start;         // [count][3], places at time 0
 } body_particles;
+
+/* The fibres at rest place x of body b into row i of those that there are. Errors: a direction that is zero, with the place; the function's own. */
+status bodies_set_fibres(const scene *s, const scene_body *b, const double x[3], body_particles *p, int64_t i, report *r);
+
+/* Fills the bodies with tetrahedra of the edge out->spacing (tetra_bodies.c). Errors as bodies_sample. */
+status tetra_bodies_fill(const scene *s, body_particles *out, report *r);
 
 /* Samples everything. Errors: a body without volume or particles, a fibre direction that is zero (with the place), notches
  * that hold no particle, memory. */

@@ -172,6 +172,29 @@ static status check_fibres(const scene *s, const scene_body *b, report *r) {
     return report_input(r, s->file, 0, "fibres", "fibre directions", found, NULL);
 }
 
+bool scene_is_tetrahedra(const scene *s) {
+    return s->body_count > 0 && s->bodies[0].discretisation == DISCRETISATION_TETRAHEDRA;
+}
+
+/* Bodies of tetrahedra live without a grid: they meet no others, and have no effect that needs one. */
+static status check_discretisation(const scene *s, const scene_body *b, report *r) {
+    const scene_material *m = &s->materials[b->material];
+    bool tetrahedra = b->discretisation == DISCRETISATION_TETRAHEDRA;
+    int count;
+    const effect *const *effects = effect_catalogue(&count);
+    if (tetrahedra != scene_is_tetrahedra(s))
+        return report_input(r, s->file, 0, "discretisation", "the same for all bodies of a scene (tetrahedra live without a grid)", "particles and tetrahedra", NULL);
+    if (!tetrahedra && b->start.outputs)
+        return report_input(r, s->file, 0, "start", "discretisation = \"tetrahedra\" beside it (particles start at rest)", "particles", NULL);
+    for (int e = 0; e < count && tetrahedra; e++) {
+        if (!m->effects[e].on || effects[e]->engine != ENGINE_SOLID || solid_tetra_find(64, "plain")->knows(effects[e])) continue;
+        char found[128];
+        snprintf(found, sizeof found, "'%s' in the body '%.60s'", effects[e]->name, b->name);
+        return report_input(r, m->file, m->line, effects[e]->name, "an effect that tetrahedra know: elastic, corotated, fibres", found, NULL);
+    }
+    return STATUS_OK;
+}
+
 /* What starts broken must be able to break. */
 static status check_notches(const scene *s, const scene_body *b, report *r) {
     const scene_material *m = &s->materials[b->material];
@@ -192,7 +215,8 @@ static status check_body(const scene *s, const scene_body *b, report *r) {
             return report_input(r, s->file, 0, "shape", "a bounded shape for a body", "one without bounds", NULL);
     if (b->material < 0 || b->material >= s->material_count)
         return report_input(r, s->file, 0, "material", "a material", "nothing", NULL);
-    status code = check_fibres(s, b, r);
+    status code = check_discretisation(s, b, r);
+    if (code == STATUS_OK) code = check_fibres(s, b, r);
     return code == STATUS_OK ? check_notches(s, b, r) : code;
 }
 
@@ -241,6 +265,8 @@ status scene_validate(scene *s, report *r) {
     for (int i = 0; i < s->material_count && code == STATUS_OK; i++) code = check_material(s, i, &s->materials[i], r);
     for (int i = 0; i < s->body_count && code == STATUS_OK; i++) code = check_body(s, &s->bodies[i], r);
     for (int i = 0; i < s->sheet_count && code == STATUS_OK; i++) code = check_sheet(s, &s->sheets[i], r);
+    if (code == STATUS_OK && s->sheet_count > 0 && s->effects[effect_index("mass_damping")].on)
+        code = report_input(r, s->file, 0, "mass_damping", "damping = … in the sheet's material", "mass_damping, which is for solids", NULL);
     if (code != STATUS_OK) return code;
     s->effects[effect_index("boundary")].on = s->grip_count + s->collider_count > 0;
     return STATUS_OK;

@@ -50,6 +50,9 @@ typedef struct scene_body {
     scene_fibres fibres;
     scene_function velocity; /* of place: initial velocity, 3 outputs; absent means at rest */
     const shape *notches;    /* particles inside start broken; NULL: none */
+    discretisation_kind discretisation;
+    mesher_kind mesher;
+    scene_function start;    /* of place at rest: where a vertex is at time 0, 3 outputs; tetrahedra only; absent means there */
 } scene_body;
 
 /* A cut that a sheet has from the start: a thin shape, or the straight line from … to. */
@@ -150,6 +153,9 @@ void scene_destroy(scene *s);
 /* Checks what tables cannot: bodies present, materials used, numbers finite, needed effects on, twins resolved. Fills the derived
  * halves of twins in every material. */
 status scene_validate(scene *s, report *r);
+
+/* Whether the scene's bodies are tetrahedra: all are, or none (scene_validate). */
+bool scene_is_tetrahedra(const scene *s);
 
 /* The number of frames after the initial one: duration × fps, rounded. */
 int64_t scene_frames(const scene *s);

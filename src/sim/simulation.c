@@ -32,9 +32,11 @@ static void define(simulation *s, int threads, solid_definition *d) {
                             .transfer_ratio = from_scene->transfer_ratio, .kernel = from_scene->kernel, .laplacian = from_scene->laplacian,
                             .count = s->particles.count, .position = s->particles.position, .velocity = s->particles.velocity,
                             .volume = s->particles.volume, .fibre1 = s->particles.fibre1, .fibre2 = s->particles.fibre2,
-                            .damage = s->particles.damage, .material = s->particles.material};
-    int gravity = effect_index("gravity");
+                            .damage = s->particles.damage, .material = s->particles.material, .element_count = s->particles.element_count,
+                            .corner = s->particles.corner, .start = s->particles.start};
+    int gravity = effect_index("gravity"), damping = effect_index("mass_damping");
     if (from_scene->effects[gravity].on) memcpy(d->gravity, from_scene->effects[gravity].value[0], sizeof d->gravity);
+    if (from_scene->effects[damping].on) d->damping = from_scene->effects[damping].value[0][0];
     define_materials(s, d);
     d->boundary_count = engine_define_boundaries(s->scene, d->boundaries);
 }
@@ -66,6 +68,7 @@ static void make_plan(simulation *s, uint32_t mask, int threads) {
     const scene *from = s->scene;
     p->mask = mask;
     p->particles = s->count;
+    p->tetrahedra = s->particles.element_count;
     p->threads = threads;
     p->spacing = s->sheet ? s->sheet_points.spacing : s->particles.spacing;
     p->dx = s->sheet ? s->sheet_points.spacing : s->particles.dx;
@@ -84,13 +87,14 @@ static void make_plan(simulation *s, uint32_t mask, int threads) {
 
 /* The engine has copied what it needs; rest positions, bodies and notches stay for the measures. */
 static void drop_loading_arrays(body_particles *p) {
-    size_t n = (size_t)p->count, row_bytes = 3 * sizeof(double) * n;
+    size_t n = (size_t)p->count, owners = p->element_count ? (size_t)p->element_count : n, row_bytes = 3 * sizeof(double) * n;
     memory_free(p->velocity, row_bytes);
+    memory_free(p->start, row_bytes);
     memory_free(p->volume, n * sizeof(double));
-    memory_free(p->material, n);
-    memory_free(p->fibre1, row_bytes);
-    memory_free(p->fibre2, row_bytes);
-    p->velocity = p->volume = p->fibre1 = p->fibre2 = NULL;
+    memory_free(p->material, owners);
+    memory_free(p->fibre1, 3 * sizeof(double) * owners);
+    memory_free(p->fibre2, 3 * sizeof(double) * owners);
+    p->velocity = p->start = p->volume = p->fibre1 = p->fibre2 = NULL;
     p->material = NULL;
 }
 
@@ -125,7 +129,7 @@ static status create_sheet(simulation *s, int threads, report *r) {
 
 status simulation_create(const scene *definition, const simulation_options *options, simulation **out, report *r) {
     *out = NULL;
-    const solid_engine *engine = solid_engine_find(options->precision, options->simd);
+    const solid_engine *engine = (scene_is_tetrahedra(definition) ? solid_tetra_find : solid_engine_find)(options->precision, options->simd);
     if (!engine)
         return report_input(r, NULL, 0, "simd", "an instruction set of this processor: auto, plain, avx2 or avx512", options->simd, NULL);
     simulation *s = memory_allocate(sizeof *s);
@@ -161,7 +165,7 @@ const simulation_plan *simulation_get_plan(const simulation *s) {
 }
 
 int simulation_stages(const simulation_plan *plan, char (*text)[48], int limit) {
-    if (!plan->sheet) return solid_engine_find(plan->precision, plan->simd)->stages(plan->mask, text, limit);
+    if (!plan->sheet) return (plan->tetrahedra ? solid_tetra_find : solid_engine_find)(plan->precision, plan->simd)->stages(plan->mask, text, limit);
     char own[32][48];
     int count = 0, stages = sheet_engine_find(plan->precision, plan->simd)->stages(plan->mask >> sheet_effects_first(), own, 32);
     for (int i = 0; i < stages && count < limit; i++) {

@@ -35,6 +35,7 @@ typedef struct simulation_plan {
     double dt;                   /* the first step's */
     double dx, spacing;
     int64_t particles;
+    int64_t tetrahedra; /* of which `particles` are the vertices; 0: material points */
     int threads, precision;
     const char *simd;
 } simulation_plan;

@@ -57,6 +57,15 @@ static status add_bonds(const simulation *s, record_list *list, report *r) {
     return code;
 }
 
+/* What the vertices are corners of, in the first frame only: it does not change. */
+static status add_tetrahedra(const simulation *s, record_list *list, report *r) {
+    void *data;
+    if (s->particles.element_count == 0 || s->frame > 0) return STATUS_OK;
+    status code = record_add(list, "solid/tetrahedra", RECORD_I32, s->particles.element_count, 4, "1", &data, r);
+    if (code == STATUS_OK) memcpy(data, s->particles.corner, (size_t)s->particles.element_count * 4 * sizeof *s->particles.corner);
+    return code;
+}
+
 status simulation_frame_records(const simulation *s, record_list *list, report *r) {
     status code = add_field(s, "position", "length", list, r);
     if (code == STATUS_OK) code = add_field(s, "velocity", "length/time", list, r);
@@ -69,6 +78,7 @@ status simulation_frame_records(const simulation *s, record_list *list, report *
             snprintf(name, sizeof name, "%s/%s", set_of(s), f->key);
             if (f->written && (s->plan.mask >> e & 1) && !record_find(list, name)) code = add_field(s, f->key, f->unit, list, r);
         }
+    if (code == STATUS_OK) code = add_tetrahedra(s, list, r);
     return code == STATUS_OK && s->sheet ? add_bonds(s, list, r) : code;
 }
 

@@ -4,11 +4,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-extern const solid_engine solid_engine_table_f32_plain, solid_engine_table_f64_plain;
+#define DECLARE(simd)                                                                                                  \
+    extern const solid_engine solid_engine_table_f32_##simd, solid_engine_table_f64_##simd;                            \
+    extern const solid_engine solid_tetra_table_f32_##simd, solid_tetra_table_f64_##simd;
+DECLARE(plain)
 #ifdef SUNDER_HAS_X86
-extern const solid_engine solid_engine_table_f32_avx2, solid_engine_table_f64_avx2;
-extern const solid_engine solid_engine_table_f32_avx512, solid_engine_table_f64_avx512;
+DECLARE(avx2)
+DECLARE(avx512)
+#define EACH(table) &table##_f32_avx512, &table##_f64_avx512, &table##_f32_avx2, &table##_f64_avx2, &table##_f32_plain, &table##_f64_plain
+#else
+#define EACH(table) &table##_f32_plain, &table##_f64_plain
 #endif
+
+static const solid_engine *const points[] = {EACH(solid_engine_table)};
+static const solid_engine *const meshes[] = {EACH(solid_tetra_table)};
+enum { VARIANTS = sizeof points / sizeof *points };
 
 static int processor_has(const char *simd) {
     if (strcmp(simd, "plain") == 0) return 1;
@@ -21,18 +31,20 @@ static int processor_has(const char *simd) {
     return 0;
 }
 
-const solid_engine *solid_engine_find(int precision, const char *simd) {
-    static const solid_engine *const engines[] = {
-#ifdef SUNDER_HAS_X86
-        &solid_engine_table_f32_avx512, &solid_engine_table_f64_avx512, &solid_engine_table_f32_avx2, &solid_engine_table_f64_avx2,
-#endif
-        &solid_engine_table_f32_plain, &solid_engine_table_f64_plain,
-    };
+static const solid_engine *find(const solid_engine *const *engines, int precision, const char *simd) {
     int any = !simd || strcmp(simd, "auto") == 0;
-    for (size_t i = 0; i < sizeof engines / sizeof *engines; i++) {
+    for (size_t i = 0; i < VARIANTS; i++) {
         if (engines[i]->precision != precision) continue;
         if (!any && strcmp(engines[i]->simd, simd) != 0) continue;
         if (processor_has(engines[i]->simd)) return engines[i];
     }
     return NULL;
+}
+
+const solid_engine *solid_engine_find(int precision, const char *simd) {
+    return find(points, precision, simd);
+}
+
+const solid_engine *solid_tetra_find(int precision, const char *simd) {
+    return find(meshes, precision, simd);
 }

@@ -244,20 +244,9 @@ static void phases(const solid *s, double seconds[SOLID_PHASES]) {
     memcpy(seconds, s->seconds, sizeof s->seconds);
 }
 
-/* The stages of a step in the order in which transfer.c and grid.c call them. */
-static int stage_names(uint32_t mask, char (*text)[48], int limit) {
-    static const struct {
-        const char *pass, *name;
-        size_t offset;
-    } places[] = {
-        {"p2g", "degrade", offsetof(solid_stages, degrade)}, {NULL, "stress", offsetof(solid_stages, stress)},
-        {"solve", "solve", offsetof(solid_stages, solve)},
-        {"grid", "grid", offsetof(solid_stages, grid)},      {NULL, "constrain", offsetof(solid_stages, constrain)},
-        {"g2p", "update", offsetof(solid_stages, update)},
-        {NULL, "degrade", offsetof(solid_stages, degrade)},  {NULL, "wave", offsetof(solid_stages, wave)},
-    };
+int solid_stage_names(const stage_place *places, int place_count, uint32_t mask, char (*text)[48], int limit) {
     int count = 0;
-    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+    for (int i = 0; i < place_count; i++) {
         if (places[i].pass && count < limit) snprintf(text[count++], sizeof text[0], "%s", places[i].pass);
         for (int e = 0; e < SOLID_EFFECTS; e++) {
             void (*stage)(void);
@@ -269,6 +258,23 @@ static int stage_names(uint32_t mask, char (*text)[48], int limit) {
     return count;
 }
 
+/* The stages of a step in the order in which transfer.c and grid.c call them. */
+static int stage_names(uint32_t mask, char (*text)[48], int limit) {
+    static const stage_place places[] = {
+        {"p2g", "degrade", offsetof(solid_stages, degrade)}, {NULL, "stress", offsetof(solid_stages, stress)},
+        {"solve", "solve", offsetof(solid_stages, solve)},
+        {"grid", "grid", offsetof(solid_stages, grid)},      {NULL, "constrain", offsetof(solid_stages, constrain)},
+        {"g2p", "update", offsetof(solid_stages, update)},
+        {NULL, "degrade", offsetof(solid_stages, degrade)},  {NULL, "wave", offsetof(solid_stages, wave)},
+    };
+    return solid_stage_names(places, sizeof places / sizeof *places, mask, text, limit);
+}
+
+static bool knows(const effect *e) {
+    (void)e;
+    return true;
+}
+
 #define TEXT_(x) #x
 #define TEXT(x) TEXT_(x)
 
@@ -276,5 +282,5 @@ const solid_engine solid_engine_table = {
     .simd = TEXT(SOLID_SIMD_NAME), .precision = SUNDER_PRECISION, .effects = effects, .effect_count = SOLID_EFFECTS,
     .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .sort = begin_frame, .step = step,
     .measure = solid_measure, .read = particles_read, .components = components, .save = solid_save, .restore = solid_restore,
-    .stages = stage_names, .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = phases,
+    .stages = stage_names, .knows = knows, .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = phases,
 };

@@ -29,6 +29,7 @@ typedef struct solid_definition {
     double transfer_ratio;
     kernel_kind kernel, laplacian;
     double gravity[3];
+    double damping; /* 1/time */
     uint32_t effect_mask; /* effects that any body uses, by index in the effect list */
     int material_count, boundary_count;
     solid_material materials[SOLID_MATERIALS];
@@ -39,6 +40,11 @@ typedef struct solid_definition {
     const double *fibre1, *fibre2;     /* [count][3], unit and orthogonal; NULL when no effect needs them */
     const double *damage;              /* [count], at the start, 0 to 1; NULL: whole */
     const uint8_t *material;           /* [count] */
+    /* A body of tetrahedra: particles are its vertices, `position` their places at rest. Fibres and
+     * `material` are the elements'; `volume` is not read. */
+    int64_t element_count;         /* 0: material points */
+    const int32_t *corner;         /* [element_count][4], right-handed: (x1 − x0) × (x2 − x0) · (x3 − x0) > 0 */
+    const double *start;           /* [count][3], places at time 0 */
 } solid_definition;
 
 typedef struct solid_measures {
@@ -91,6 +97,8 @@ typedef struct solid_engine {
     /* Lists what runs within a step for effects in `mask`, in order: "p2g", "damage.degrade", … Returns how many; text has room for
      * `limit` names. */
     int (*stages)(uint32_t mask, char (*text)[48], int limit);
+    /* Whether this engine can run an effect of its list. */
+    bool (*knows)(const effect *e);
     /* A knob was turned: values in the definition's materials changed. */
     void (*refresh)(solid *s);
     /* Bytes a particle, and seconds spent by phase since the start: sort, p2g, grid, g2p. */
@@ -101,5 +109,9 @@ typedef struct solid_engine {
 /* The engine for a precision (32, 64) and instruction set ("auto": the best that this processor has; "plain", "avx2",
  * "avx512"). NULL when this processor or build lacks it. */
 const solid_engine *solid_engine_find(int precision, const char *simd);
+
+/* The engine of bodies of tetrahedra, in which F comes from the mesh (solid paper, Fig. 19), behind the same table: particles are the mesh's
+ * vertices. "deformation_gradient" is the mean over a vertex' elements, determinants are the elements' own. There is no sorting. */
+const solid_engine *solid_tetra_find(int precision, const char *simd);
 
 #endif

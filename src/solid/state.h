@@ -200,6 +200,7 @@ typedef struct tile_work {
     tile_result *result;
     int effect;            /* the calling effect's index */
     real dt;
+    real *piola;           // [TILE_PACKS][9][PACK], the first Piola-Kirchhoff stress; only elements of a mesh ask for it
     double energy[2];      /* energy stages add here: matrix or own, fibre */
 } tile_work;
 
@@ -208,6 +209,7 @@ typedef struct grid_work {
     const solid *state;
     int32_t slot;
     real *nodes; // [BLOCK_NODES][NODE], velocity and mass
+    const double *places; // [BLOCK_NODES][3] in the world: of a mesh's vertices; NULL: the slot's block says where
     real dt;
     block_result *result;
 } grid_work;
@@ -221,6 +223,10 @@ typedef struct solid_stages {
     void (*wave)(tile_work *w);       /* after update: adds to scratch->wave_modulus */
     void (*grid)(const grid_work *w); /* on velocities */
     void (*energy)(tile_work *w);     /* measures */
+    /* For elements of a mesh, whose F comes from their corners and may be singular: P itself, added to `piola` (τ F⁻ᵀ is lost there); and a
+     * bound of the largest eigenvalue of ∂²Ψ/∂F², added to scratch->wave_modulus. */
+    void (*piola)(tile_work *w);
+    void (*stiffness)(tile_work *w);
     /* Between the way to the grid and the grid's update, once a step: for what must be solved for. */
     status (*solve)(solid *s, real dt, report *r);
     /* After the grid's update, once a step: what must hold for its velocities. */
@@ -273,6 +279,12 @@ status solid_save(const solid *s, record_list *list, report *r);
 status solid_restore(solid *s, const record_list *list, report *r);
 /* engine.c */
 void solid_constants_refresh(solid *s);
+/* Names the stages that `places` lists, pass by pass, of the effects in `mask`; returns how many. */
+typedef struct stage_place {
+    const char *pass, *name;
+    size_t offset; /* in solid_stages */
+} stage_place;
+int solid_stage_names(const stage_place *places, int place_count, uint32_t mask, char (*text)[48], int limit);
 
 /* An effect's table in this variant: each effect file defines one. */
 #define SOLID_EFFECT(name) SOLID_VARIANT(effect_##name)

@@ -52,6 +52,18 @@ SIMD_INLINE vec vec3v_dot(vec3v a, vec3v b) {
     return vec_fma(a.x, b.x, vec_fma(a.y, b.y, a.z * b.z));
 }
 
+SIMD_INLINE vec3v vec3v_cross(vec3v a, vec3v b) {
+    return (vec3v){vec_fma(a.y, b.z, -(a.z * b.y)), vec_fma(a.z, b.x, -(a.x * b.z)), vec_fma(a.x, b.y, -(a.y * b.x))};
+}
+
+SIMD_INLINE vec3v vec3v_select(vec_mask mask, vec3v a, vec3v b) {
+    return (vec3v){vec_select(mask, a.x, b.x), vec_select(mask, a.y, b.y), vec_select(mask, a.z, b.z)};
+}
+
+SIMD_INLINE vec3v vec3v_scale(vec s, vec3v a) {
+    return (vec3v){s * a.x, s * a.y, s * a.z};
+}
+
 SIMD_INLINE vec3v mat3v_times(mat3v m, vec3v v) {
     return (vec3v){vec_fma(m.xx, v.x, vec_fma(m.xy, v.y, m.xz * v.z)), vec_fma(m.yx, v.x, vec_fma(m.yy, v.y, m.yz * v.z)),
                    vec_fma(m.zx, v.x, vec_fma(m.zy, v.y, m.zz * v.z))};
@@ -62,6 +74,36 @@ SIMD_INLINE vec mat3v_determinant(mat3v m) {
     vec cy = vec_fma(m.yz, m.zx, -(m.yx * m.zz));
     vec cz = vec_fma(m.yx, m.zy, -(m.yy * m.zx));
     return vec_fma(m.xx, cx, vec_fma(m.xy, cy, m.xz * cz));
+}
+
+/* J F⁻ᵀ without a division: defined for every F. */
+SIMD_INLINE mat3v mat3v_cofactor(mat3v m) {
+    return (mat3v){
+        .xx = vec_fma(m.yy, m.zz, -(m.yz * m.zy)), .xy = vec_fma(m.yz, m.zx, -(m.yx * m.zz)), .xz = vec_fma(m.yx, m.zy, -(m.yy * m.zx)),
+        .yx = vec_fma(m.zy, m.xz, -(m.zz * m.xy)), .yy = vec_fma(m.zz, m.xx, -(m.zx * m.xz)), .yz = vec_fma(m.zx, m.xy, -(m.zy * m.xx)),
+        .zx = vec_fma(m.xy, m.yz, -(m.xz * m.yy)), .zy = vec_fma(m.xz, m.yx, -(m.xx * m.yz)), .zz = vec_fma(m.xx, m.yy, -(m.xy * m.yx)),
+    };
+}
+
+SIMD_INLINE vec mat3v_square_sum(mat3v m) {
+    vec x = vec_fma(m.xx, m.xx, vec_fma(m.xy, m.xy, m.xz * m.xz)), y = vec_fma(m.yx, m.yx, vec_fma(m.yy, m.yy, m.yz * m.yz));
+    return x + y + vec_fma(m.zx, m.zx, vec_fma(m.zy, m.zy, m.zz * m.zz));
+}
+
+/* Nine components at `base` [TILE_PACKS][9][PACK] += a A + b B. */
+SIMD_INLINE void mat3v_add_to(real *base, int k, int part, vec a, mat3v A, vec b, mat3v B) {
+    const vec first[9] = {A.xx, A.xy, A.xz, A.yx, A.yy, A.yz, A.zx, A.zy, A.zz};
+    const vec second[9] = {B.xx, B.xy, B.xz, B.yx, B.yy, B.yz, B.zx, B.zy, B.zz};
+    for (int c = 0; c < 9; c++) {
+        real *to = scratch_at(base, 9, k, c, part);
+        vec_store(to, vec_fma(a, first[c], vec_fma(b, second[c], vec_load(to))));
+    }
+}
+
+/* A bound of the spectral norm of ∂(cof F)/∂F = ∂²J/∂F²: its eigenvalues are ± the singular values of F, and those of a symmetric tensor without
+ * trace and of norm √2 |F|, none of which exceeds √⅔ of that norm. */
+SIMD_INLINE vec mat3v_cofactor_slope(mat3v m) {
+    return (real)1.1547005383792515 * vec_sqrt(mat3v_square_sum(m));
 }
 
 /* M Mᵀ */

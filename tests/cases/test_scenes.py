@@ -428,6 +428,23 @@ def test_elastic_tube():
         check(two[1] > two[0] + 0.05 and two[0] > one[0] + 0.02, f"orthotropic: the second family too: {two} {one}")
 
 
+def test_inversion():
+    """Fig. 19: every vertex anywhere in a box, or all in one point but for seeds; each finds back to the rest shape."""
+    with Box() as box:
+        runs = {f"{variant}, {model}": box.run("inversion", None, 300, variant=variant, model=model)
+                for variant in ("random", "collapsed") for model in ("elastic", "corotated")}
+        for name, run in runs.items():
+            first, last = (box.series(run, key)[0] for key in ("determinant_min", "elastic")), box.series(run, "elastic")[-1]
+            least, stored = first
+            print(f"  {name}: J from {least:.3g} to {run['determinant_min']:.5f} … {run['determinant_max']:.5f}, energy from {stored:.3g} to {last:.1e}")
+            check(least < 1e-6 and stored > 10, f"{name}: starts inverted or collapsed")
+            check(abs(run["determinant_min"] - 1) < 0.01 and abs(run["determinant_max"] - 1) < 0.01, f"{name}: all J are 1 again")
+            # no energy is left: F is a rotation in every element, so the figure is its rest shape, turned perhaps
+            check(run["energy"]["elastic"] + run["energy"]["fibre"] < 1e-3, f"{name}: no energy is left: {run['energy']}")
+        stuck = box.run("inversion", None, 300, variant="collapsed", gamma=0, gamma2=0)
+        check(stuck["determinant_max"] < 1e-6, "without fibres a point stays a point")
+
+
 def main():
     wanted = sys.argv[3:]
     for name, test in list(globals().items()):

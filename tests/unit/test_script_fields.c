@@ -222,6 +222,33 @@ static void time_in_c_is_not_the_scripts(void) {
     script_close(s);
 }
 
+/* Bodies of tetrahedra: the words for them, and what is wrong with each. */
+static void tetrahedra(void) {
+    script *s = loaded(SCENE("{ shape = s.mesh { file = 'meshes/ball.stl' }, discretisation = 'tetrahedra', mesher = 'gmsh',"
+                             " start = function(x, y, z) return 2 * x, y + 1, -z end, " MATTER " }, "
+                             "{ shape = s.sphere { radius = 1 }, discretisation = 'tetrahedra', start = { 1, 2, 3 }, " MATTER " }"));
+    if (s) {
+        const scene *sc = script_scene(s);
+        CHECK(sc->bodies[0].discretisation == DISCRETISATION_TETRAHEDRA && sc->bodies[0].mesher == MESHER_GMSH && scene_is_tetrahedra(sc));
+        CHECK(sc->bodies[1].mesher == MESHER_LATTICE);
+        double place[3];
+        report r;
+        CHECK(scene_function_evaluate(&sc->bodies[0].start, (double[]){1, 2, 3}, 3, place, &r) == STATUS_OK);
+        CHECK(place[0] == 2 && place[1] == 3 && place[2] == -3);
+        CHECK(scene_function_evaluate(&sc->bodies[1].start, (double[]){1, 2, 3}, 3, place, &r) == STATUS_OK && place[2] == 3);
+        script_close(s);
+    }
+    s = loaded(SCENE("{ shape = s.sphere { radius = 1 }, " MATTER " }"));
+    if (s) CHECK(script_scene(s)->bodies[0].discretisation == DISCRETISATION_PARTICLES && script_scene(s)->bodies[0].start.outputs == 0);
+    script_close(s);
+#define BALL(words) SCENE("{ shape = s.sphere { radius = 1 }, " words ", " MATTER " }")
+    refused(BALL("discretisation = 'tetrahedrons'"), "tetrahedra");
+    refused(BALL("discretisation = 'tetrahedra', mesher = 'gmesh'"), "gmsh");
+    refused(BALL("discretisation = 'tetrahedra', start = function(x, y, z) return x end"), "solids[1].start");
+    refused(BALL("start = { 0, 0, 0 }"), "discretisation");
+#undef BALL
+}
+
 int main(void) {
     files_open();
     write_meshes();
@@ -232,6 +259,7 @@ int main(void) {
     RUN(random_fibres);
     RUN(tables);
     RUN(flows);
+    RUN(tetrahedra);
     RUN(time_in_c_is_not_the_scripts);
     files_close();
     CHECK(memory_live_bytes() == 0);

@@ -262,12 +262,33 @@ static void wave_modulus_bounds_the_acoustic_tensor(void) {
     free(p);
 }
 
+/* The hard case without fibres (METHOD.md §1): under a uniform squeeze s the way back to s = 1 is barred below the root of
+ * λs⁴ − (λ+μ)s + μ; pressure changes sign there. ν = 0.25 with the consistent λ: λ = 2μ. */
+static void a_deep_squeeze_is_barred_without_fibres(void) {
+    material_point *p = point_create(1u << EFFECT_elastic);
+    p->values[EFFECT_elastic].value[0][0] = 2.5;
+    p->values[EFFECT_elastic].value[1][0] = 0.25;
+    double low = 0.1, high = 0.6, tau[6], root = 0.3;
+    for (int i = 0; i < 60; i++) {
+        double s = 0.5 * (low + high);
+        const double F[9] = {s, 0, 0, 0, s, 0, 0, 0, s};
+        point_set(p, FIELD_DEFORMATION, F);
+        point_stress(p, tau);
+        if (tau[0] > 0) low = s; /* contracts further */
+        else high = s;
+        root -= (2 * pow(root, 4) - 3 * root + 1) / (8 * pow(root, 3) - 3); /* Newton's, of the formula */
+    }
+    CHECK_ROW("METHOD 1", "uniform squeeze below which the closed form contracts further (gamma 0, lambda = 2 mu)", root, low, 1e-9);
+    free(p);
+}
+
 int main(void) {
     RUN(stress_is_the_gradient_of_energy);
     RUN(energy_is_objective);
     RUN(closed_form_is_the_qr_form);
     RUN(small_strain_is_hooke);
     RUN(damage_degrades_tension_only);
+    RUN(a_deep_squeeze_is_barred_without_fibres);
     RUN(wave_modulus_bounds_the_acoustic_tensor);
     return check_finish();
 }

@@ -3,6 +3,7 @@
  * - A block on a tilted wall with Coulomb friction slides with g (sin θ − μ cos θ), and does not slide where μ > tan θ.
  * - A sticky wall holds; a separating wall lets go upwards and not downwards; a block thrown at a slip wall keeps its tangential momentum.
  * - A spinning grip turns the block with it: angular velocity of the particles is the grip's.
+ * - No particle that starts in a protecting grip is ever damaged while the bar between two grips breaks; in grips that do not protect, some are.
  * - Work done by grips equals the energy they put in, less what dissipates: never negative dissipation for a pulled bar. */
 #include "check.h"
 #include "verify/solid_scene.h"
@@ -127,10 +128,51 @@ static void a_pulled_bar_dissipates_no_less_than_nothing(void) {
     scene_destroy(s);
 }
 
+/* A bar that breaks between two grips: damage at most within the grips' regions and between them. */
+static void break_between_grips(bool protects, double *gripped, double *free) {
+    scene *s = test_scene(block, 1e3, 0.3, 1);
+    s->particles = 2000;
+    test_set(s, "damage", "break_stretch", 0.02);
+    test_set(s, "damage", "eta", 0.01);
+    for (int side = -1; side <= 1; side += 2) {
+        double low[3] = {side < 0 ? -2 : 0.25, -1, -1}, high[3] = {side < 0 ? -0.25 : 2, 1, 1};
+        s->grips[s->grip_count++] = (scene_grip){.shape = shape_box(s->memory, low, high), .stop = HUGE_VAL, .protects = protects,
+                                                 .velocity = {.outputs = 3, .constant = {1.5 * side, 0, 0}}};
+    }
+    simulation *sim = test_simulation(s, 64, "auto", 2);
+    solid *state;
+    const solid_engine *engine = simulation_engine(sim, &state);
+    int64_t n = simulation_get_plan(sim)->particles;
+    double *rest = memory_allocate((size_t)n * 24), *d = memory_allocate((size_t)n * 8);
+    engine->read(state, "position", rest);
+    report r;
+    while (simulation_time(sim) < 0.2) CHECK(simulation_step(sim, 0, &r) == STATUS_OK);
+    engine->read(state, "damage", d);
+    *gripped = *free = 0;
+    for (int64_t i = 0; i < n; i++) {
+        double *most = fabs(rest[3 * i]) > 0.25 ? gripped : free;
+        *most = fmax(*most, d[i]);
+    }
+    memory_free(rest, (size_t)n * 24), memory_free(d, (size_t)n * 8);
+    simulation_destroy(sim);
+    scene_destroy(s);
+}
+
+static void no_gripped_particle_breaks(void) {
+    double gripped, free;
+    break_between_grips(false, &gripped, &free);
+    printf("  without protection: damage up to %.3f in the grips, %.3f between them\n", gripped, free);
+    CHECK(gripped > 0.1);
+    break_between_grips(true, &gripped, &free);
+    CHECK_ROW("METHOD 2", "bar that breaks between two grips: largest damage of a particle that started in a grip", 0, gripped, 0);
+    CHECK(free > 0.9);
+}
+
 int main(void) {
     RUN(friction_is_coulombs);
     RUN(a_separating_wall_lets_go);
     RUN(a_spinning_grip_turns_its_block);
+    RUN(no_gripped_particle_breaks);
     RUN(a_pulled_bar_dissipates_no_less_than_nothing);
     return check_finish();
 }

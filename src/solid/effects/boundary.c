@@ -50,7 +50,20 @@ static void apply_to_node(const solid_boundary *b, const double x[3], double dx,
     }
 }
 
+/* A mesh's vertices, each where it is. */
+static void hold_vertices(const grid_work *w) {
+    const solid *s = w->state;
+    for (int i = 0; i < s->definition.boundary_count; i++)
+        for (int v = 0; v < BLOCK_NODES && s->definition.boundaries[i].motion.active; v++)
+            if (w->nodes[v * NODE + 3] > 0)
+                apply_to_node(&s->definition.boundaries[i], w->places + 3 * v, s->definition.dx, w->nodes + v * NODE, w->result, NULL);
+}
+
 static void hold(const grid_work *w) {
+    if (w->places) {
+        hold_vertices(w);
+        return;
+    }
     const solid *s = w->state;
     double dx = s->definition.dx;
     const int32_t *block = s->slot_coordinate[w->slot];

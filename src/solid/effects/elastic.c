@@ -22,18 +22,21 @@ SIMD_INLINE vec volumetric_degradation(vec J, vec g) {
     return vec_select(J >= 1, g, vec_all(1));
 }
 
+/* g₊ λ (J − 1) − g μ, what multiplies cof F in P and J I in τ. */
+SIMD_INLINE vec cofactor_weight(const tile_work *w, vec J, vec g) {
+    return vec_fma(volumetric_degradation(J, g) * w->constants[LAMBDA], J - 1, -(g * w->constants[MU]));
+}
+
 static void stress(tile_work *w) {
     const solid_field *F_field = &w->state->fields[FIELD_DEFORMATION];
-    real mu = w->constants[MU], lambda = w->constants[LAMBDA];
+    real mu = w->constants[MU];
     for (int k = 0; k < w->tile->pack_count; k++)
         for (int part = 0; part < PACK_PARTS; part++) {
             mat3v F = mat3v_load(F_field, w->tile->first_pack + k, part);
             vec g = vec_load(scratch_at(w->scratch->degradation, 1, k, 0, part));
             vec J = mat3v_determinant(F);
             sym3v b = mat3v_gram(F);
-            /* g μ (b − J I) + g₊ λ (J − 1) J I */
-            vec g_mu = g * mu;
-            vec pressure = J * vec_fma(volumetric_degradation(J, g) * lambda, J - 1, -g_mu);
+            vec g_mu = g * mu, pressure = J * cofactor_weight(w, J, g);
             real *tau = w->scratch->kirchhoff;
             vec_store(scratch_at(tau, 6, k, 0, part), vec_fma(g_mu, b.xx, pressure));
             vec_store(scratch_at(tau, 6, k, 1, part), vec_fma(g_mu, b.yy, pressure));
@@ -41,6 +44,31 @@ static void stress(tile_work *w) {
             vec_store(scratch_at(tau, 6, k, 3, part), g_mu * b.xy);
             vec_store(scratch_at(tau, 6, k, 4, part), g_mu * b.yz);
             vec_store(scratch_at(tau, 6, k, 5, part), g_mu * b.xz);
+        }
+}
+
+/* P = g μ F + (g₊ λ (J − 1) − g μ) cof F: the same coefficients as τ's, without Fᵀ. */
+static void piola(tile_work *w) {
+    const solid_field *F_field = &w->state->fields[FIELD_DEFORMATION];
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            mat3v F = mat3v_load(F_field, w->tile->first_pack + k, part);
+            vec g = vec_load(scratch_at(w->scratch->degradation, 1, k, 0, part)), J = mat3v_determinant(F), g_mu = g * w->constants[MU];
+            mat3v_add_to(w->piola, k, part, g_mu, F, cofactor_weight(w, J, g), mat3v_cofactor(F));
+        }
+}
+
+/* Of μ/2 |F|² it is μ; of λ/2 (J − 1)² it is λ |cof F|² and what J's own curvature makes of λ (J − 1) − μ. */
+static void stiffness(tile_work *w) {
+    const solid_field *F_field = &w->state->fields[FIELD_DEFORMATION];
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            mat3v F = mat3v_load(F_field, w->tile->first_pack + k, part);
+            vec g = vec_load(scratch_at(w->scratch->degradation, 1, k, 0, part)), J = mat3v_determinant(F);
+            vec bulk = volumetric_degradation(J, g) * w->constants[LAMBDA] * mat3v_square_sum(mat3v_cofactor(F));
+            vec curved = vec_abs(cofactor_weight(w, J, g)) * mat3v_cofactor_slope(F);
+            real *modulus = scratch_at(w->scratch->wave_modulus, 1, k, 0, part);
+            vec_store(modulus, vec_load(modulus) + g * w->constants[MU] + bulk + curved);
         }
 }
 
@@ -92,7 +120,7 @@ static const effect_measure measures[] = {
     {"elastic", "mass length^2/time^2", "stored energy of the matrix"},
 };
 
-static const solid_stages stages = {.constants = constants, .stress = stress, .wave = wave, .energy = energy};
+static const solid_stages stages = {.constants = constants, .stress = stress, .wave = wave, .energy = energy, .piola = piola, .stiffness = stiffness};
 
 const effect SOLID_EFFECT(elastic) = {
     .name = "elastic", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "isotropic elasticity of the matrix",

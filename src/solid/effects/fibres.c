@@ -42,6 +42,41 @@ static void stress(tile_work *w) {
     add_family(w, w->state->fibre2_field, w->constants[K2]);
 }
 
+/* P = k (ℓ − 1) f/ℓ aᵀ, f = F a. Where ℓ = 0 the force is there, k, and only its direction is lost: the fibre's own at rest
+ * stands in for it, so that a collapsed element opens again (METHOD.md §1). */
+static void add_family_piola(tile_work *w, int field, real stiffness) {
+    if (field < 0 || stiffness == 0) return;
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            int32_t pack = w->tile->first_pack + k;
+            vec3v a = vec3v_load(&w->state->fields[field], pack, part);
+            vec3v f = mat3v_times(mat3v_load(&w->state->fields[FIELD_DEFORMATION], pack, part), a);
+            vec length = vec_sqrt(vec3v_dot(f, f)), inverse = 1 / vec_max(length, vec_all(LENGTH_TINY)), force = stiffness * (length - 1);
+            vec_mask lost = length < LENGTH_TINY;
+            vec direction[3] = {vec_select(lost, a.x, f.x * inverse), vec_select(lost, a.y, f.y * inverse), vec_select(lost, a.z, f.z * inverse)};
+            const vec rest[3] = {a.x, a.y, a.z};
+            for (int c = 0; c < 9; c++) {
+                real *P = scratch_at(w->piola, 9, k, c, part);
+                vec_store(P, vec_fma(force * direction[c / 3], rest[c % 3], vec_load(P)));
+            }
+        }
+}
+
+static void piola(tile_work *w) {
+    add_family_piola(w, w->state->fibre_field, w->constants[K1]);
+    add_family_piola(w, w->state->fibre2_field, w->constants[K2]);
+}
+
+/* Along the fibre k, across it k (1 − 1/ℓ) < k. */
+static void stiffness(tile_work *w) {
+    vec both = vec_all((w->state->fibre_field >= 0 ? w->constants[K1] : 0) + (w->state->fibre2_field >= 0 ? w->constants[K2] : 0));
+    for (int k = 0; k < w->tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            real *modulus = scratch_at(w->scratch->wave_modulus, 1, k, 0, part);
+            vec_store(modulus, vec_load(modulus) + both);
+        }
+}
+
 /* ρ0 c² grows by k ℓ². */
 static void add_wave(tile_work *w, int field, real stiffness) {
     if (field < 0 || stiffness == 0) return;
@@ -97,7 +132,7 @@ static const effect_measure measures[] = {
     {"fibre", "mass length^2/time^2", "stored energy of the fibres"},
 };
 
-static const solid_stages stages = {.constants = constants, .stress = stress, .wave = wave, .energy = energy};
+static const solid_stages stages = {.constants = constants, .stress = stress, .wave = wave, .energy = energy, .piola = piola, .stiffness = stiffness};
 
 const effect SOLID_EFFECT(fibres) = {
     .name = "fibres", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "stiffness along fibre directions",

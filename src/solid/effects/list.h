@@ -10,6 +10,7 @@
     X(corotated) /* or this: a material has one elastic model */                                                       \
     X(fibres)                                                                                                          \
     X(gravity)                                                                                                         \
+    X(mass_damping)                                                                                                    \
     X(boundary) /* grips and colliders on the grid's velocities */                                                     \
     X(inextensible) /* the last word on them */
 

@@ -203,9 +203,9 @@ static void a_crack_runs_at_the_toughness_asked_for(void) {
         }
 }
 
-/* A plate 2 × 1 with a notch over a quarter of its length, its upper and lower edges drawn apart at a strain rate: how fast the crack
+/* A plate 2 × 1 with a notch over a quarter of its length, its upper and lower edges drawn apart at a strain rate, from a strain that it has already: how fast the crack
  * runs over the middle half, over the shear speed, and what share of the bonds broken by then lies over 4 spacings off its line. */
-static double plate_crack(double rate, double *off_line) {
+static double plate_crack(double strain, double rate, double *off_line) {
     enum { ACROSS = 120, ROWS = 60 };
     double dx = 1.0 / ROWS, G = 1e-3, shear = sqrt(3.0 / 8 * E), middle = 0.5 * dx * (ROWS - 1);
     arena *memory = arena_create("plate");
@@ -224,6 +224,7 @@ static double plate_crack(double rate, double *off_line) {
     p->d.boundary_count = 2;
     for (int64_t i = 0; i < p->d.count; i++) {
         p->protected[i] = p->rest[i][1] < 1.6 * dx || p->rest[i][1] > 2 * middle - 1.6 * dx;
+        p->position[i][1] += (p->rest[i][1] - middle) * strain;
         p->velocity[i][1] = (p->rest[i][1] - middle) * rate; /* no wave from the grips */
     }
     CHECK(patch_start(p, 64, "auto", 2));
@@ -256,7 +257,7 @@ static double plate_crack(double rate, double *off_line) {
 
 /* The Rayleigh speed of plane stress at ν = 1/3 is 0.9194 of the shear speed. */
 static void cracks_stay_under_the_rayleigh_speed(void) {
-    double off[2], slow = plate_crack(0.003, &off[0]), fast = plate_crack(0.025, &off[1]);
+    double off[2], slow = plate_crack(0, 0.003, &off[0]), fast = plate_crack(0.007, 0, &off[1]);
     CHECK_ROW("METHOD 6", "notched plate, slow load: crack speed over Rayleigh's", 0.5, slow / 0.9194, 0.5);
     CHECK_ROW("METHOD 6", "notched plate, high load: crack speed over Rayleigh's", 0.5, fast / 0.9194, 0.5);
     CHECK_ROW("METHOD 6", "slow load: share of broken bonds over 4 spacings off the crack's line", 0, off[0], 0.05);

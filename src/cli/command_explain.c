@@ -38,6 +38,11 @@ static status measure_cost(simulation *s, const scene *scene_data, cost *c, repo
     return STATUS_OK;
 }
 
+/* Whether an effect could be on in this scene: those of the other engine could not, but for the scene's own. */
+static bool concerns(const simulation_plan *p, int e) {
+    return p->effects[e]->scope == SCOPE_SCENE || (p->effects[e]->engine == ENGINE_SHEET) == p->sheet;
+}
+
 static void print_text(const simulation_plan *p, const scene *s, const cost *c) {
     printf("%s\n\n", s->title[0] ? s->title : s->file);
     printf("  particles  %lld  spacing %.4g  dx %.4g  f%d %s, %d threads\n", (long long)p->particles, p->spacing, p->dx, p->precision,
@@ -49,16 +54,21 @@ static void print_text(const simulation_plan *p, const scene *s, const cost *c) 
         shape_describe(s->bodies[b].shape, text, sizeof text);
         printf("%s%s of %s\n", b ? "             " : "", text, s->materials[s->bodies[b].material].name);
     }
+    for (int b = 0; b < s->sheet_count; b++) {
+        char text[160];
+        shape_describe(s->sheets[b].region.shape, text, sizeof text);
+        printf("%ssheet of %s, %s, thickness %.4g\n", b ? "             " : "", text, s->materials[s->sheets[b].material].name, s->sheets[b].thickness);
+    }
     puts("\n  effects");
     for (int e = 0; e < p->effect_count; e++)
-        printf("    %-3s %-10s %s\n", p->mask >> e & 1 ? "on" : "off", p->effects[e]->name, p->effects[e]->doc);
+        if (concerns(p, e)) printf("    %-3s %-14s %s\n", p->mask >> e & 1 ? "on" : "off", p->effects[e]->name, p->effects[e]->doc);
     puts("\n  fields, bytes a particle");
     for (int i = 0; i < p->field_count; i++) printf("    %5.0f  %-22s %s\n", p->fields[i].bytes, p->fields[i].name, p->fields[i].effect);
     printf("    %5.0f  with grid, padding and sort buffers\n", p->bytes_per_particle);
     puts("\n  step limits");
     for (int e = 0; e < p->effect_count; e++)
-        if (isfinite(p->limits[e])) printf("    %-10s %.4g\n", p->effects[e]->name, p->limits[e]);
-    printf("    dt         %.4g%s\n", p->dt, s->dt > 0 ? " (fixed by the scene)" : "");
+        if (isfinite(p->limits[e])) printf("    %-14s %.4g\n", p->effects[e]->name, p->limits[e]);
+    printf("    dt             %.4g%s\n", p->dt, s->dt > 0 ? " (fixed by the scene)" : "");
     printf("\n  cost       %lld frames, about %.0f steps of %.2f ms: %.0f s\n", (long long)scene_frames(s), c->steps, 1e3 * c->seconds_per_step,
            c->seconds);
 }
@@ -67,7 +77,7 @@ static void json_names(json_writer *w, const char *key, const simulation_plan *p
     json_key(w, key);
     json_array(w);
     for (int e = 0; e < p->effect_count; e++)
-        if (mask >> e & 1) json_string(w, p->effects[e]->name);
+        if ((mask >> e & 1) && concerns(p, e)) json_string(w, p->effects[e]->name);
     json_array_end(w);
 }
 

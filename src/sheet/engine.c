@@ -139,6 +139,7 @@ static sheet *create(const sheet_definition *definition, report *r) {
     }
     /* What the caller lends only for loading. */
     s->definition.position = s->definition.velocity = s->definition.diffused = NULL;
+    sheet_diffuse(s, 0); /* what is held from the start */
     return s;
 }
 

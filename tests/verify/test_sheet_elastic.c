@@ -14,6 +14,7 @@ typedef struct lattice_case {
     double alpha, theta;
 } lattice_case;
 
+static double weight; /* of bonds: a choice of the law */
 static const double E = 3, THICKNESS = 0.25, DX = 0.5;
 
 static patch *make(const lattice_case *c, int nx, int ny, const double F[4]) {
@@ -21,6 +22,7 @@ static patch *make(const lattice_case *c, int nx, int ny, const double F[4]) {
     patch_fill(p, nx, ny);
     patch_set(p, c->law, "E", E);
     patch_set(p, c->law, "nu", c->nu);
+    patch_set(p, c->law, "weight", weight);
     if (c->alpha != 0) patch_set(p, "diffusion", "k", 0), patch_set(p, "swelling", "alpha", c->alpha);
     for (int64_t i = 0; i < p->d.count; i++) {
         double x = p->rest[i][0], y = p->rest[i][1];
@@ -141,11 +143,33 @@ static void weights_are_the_smallest_change(void) {
     patch_free(p);
 }
 
+/* Why W = 1 at eight neighbours: the paper's weight is anisotropic there. And its own stiffness, for who wants to compare. */
+static void the_papers_constants_are_to_be_had(void) {
+    const lattice_case c = {SHEET_SQUARE, 1.5, 1.0 / 3, "linear", 0, 0};
+    double e = 1e-7, P[3][2];
+    weight = 1;
+    stress(&c, (const double[]){1 + e, 0, 0, 1}, 0, P[0]);
+    stress(&c, (const double[]){1, 0, 0, 1 + e}, 0, P[1]);
+    stress(&c, (const double[]){1, e, 0, 1}, 1, P[2]);
+    weight = 0;
+    CHECK_ROW("METHOD 6", "the paper's weight, R = 1.5: Zener ratio", 0.172, 2 * P[2][0] / (P[0][0] - P[1][0]), 0.001);
+    patch *p = patch_create(SHEET_SQUARE, DX, 1.5, THICKNESS);
+    patch_fill(p, 9, 9);
+    patch_set(p, "linear", "E", E);
+    patch_set(p, "linear", "nu", 0.3);
+    patch_set(p, "linear", "calibration", 1);
+    CHECK(patch_start(p, 64, "plain", 1));
+    double R = 1.5 * DX, expected = 18 * E / (3 * (1 - 0.6)) / (3.14159265358979 * R * R * R * R);
+    CHECK_ROW("METHOD 6", "calibration = \"paper\": c = 18 K / (pi R^4)", expected, p->engine->calibration(p->state, 0).stiffness, 1e-9 * expected);
+    patch_free(p);
+}
+
 int main(void) {
     RUN(eight_neighbours_are_isotropic);
     RUN(lattices_have_the_moduli_asked_for);
     RUN(swelling_is_exact);
     RUN(rubber_follows_its_curves);
     RUN(weights_are_the_smallest_change);
+    RUN(the_papers_constants_are_to_be_had);
     return check_finish();
 }

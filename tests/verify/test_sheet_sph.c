@@ -113,8 +113,8 @@ static void trajectories_agree_with_sph(void) {
         }
     }
     CHECK(most[0] > 0.3 * PULL * DURATION * 0.5 && most[1] > 0.3 * PULL * DURATION);
-    CHECK_ROW("METHOD 7", "stretched sheet, P1: largest distance from SPH's place over the grips' way", 0, worst[0] / (PULL * DURATION), 0.02);
-    CHECK_ROW("METHOD 7", "stretched sheet, P2: largest distance from SPH's place over the grips' way", 0, worst[1] / (PULL * DURATION), 0.02);
+    CHECK_ROW("METHOD 7", "stretched sheet, P1: largest distance from SPH's place over the grips' way", 0, worst[0] / (PULL * DURATION), 0.03);
+    CHECK_ROW("METHOD 7", "stretched sheet, P2: largest distance from SPH's place over the grips' way", 0, worst[1] / (PULL * DURATION), 0.03);
     free(x);
     patch_free(p);
     arena_destroy(memory);

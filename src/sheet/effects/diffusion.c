@@ -53,9 +53,11 @@ static void apply_sources(sheet *s, double from, double to) {
 
 void sheet_diffuse(sheet *s, double time) {
     double interval = time - s->diffused_until;
-    if (!s->conduct || !(interval > 0)) return;
-    sheet_for_packs(s, (real)interval, spread);
-    sheet_for_packs(s, (real)interval, commit);
+    if (!s->conduct || !(interval >= 0)) return;
+    if (interval > 0) {
+        sheet_for_packs(s, (real)interval, spread);
+        sheet_for_packs(s, (real)interval, commit);
+    }
     apply_sources(s, s->diffused_until, time);
     s->diffused_until = time;
 }

@@ -51,6 +51,29 @@ static void a_bond_breaks_at_its_stretch_and_never_heals(void) {
     arena_destroy(memory);
 }
 
+/* What diffuses passes through a whole bond, and not through one that has broken on the way. */
+static void a_broken_bond_lets_nothing_through(void) {
+    arena *memory = arena_create("pair");
+    for (int breaks = 0; breaks < 2; breaks++) {
+        patch *p = pair(memory, "linear");
+        patch_set(p, "fracture", "stretch", 0.05);
+        patch_set(p, "diffusion", "k", 50);
+        p->diffused[0] = 1;
+        CHECK(patch_start(p, 64, "auto", 1));
+        draw(p, (const double[]){breaks ? 0.06 : 0.04}, 1);
+        p->engine->settle(p->state, p->time);
+        double before[2], after[2];
+        p->engine->read(p->state, "diffused", before);
+        CHECK(patch_steps(p, 20, 1e-4) == STATUS_OK);
+        p->engine->settle(p->state, p->time);
+        p->engine->read(p->state, "diffused", after);
+        if (breaks) CHECK_ROW("METHOD 6", "bond broken by stretching: what passes afterwards", 0, after[1] - before[1], 0);
+        else CHECK(after[1] > before[1] + 1e-3);
+        patch_free(p);
+    }
+    arena_destroy(memory);
+}
+
 /* Loaded to 3 η0, the force is c η0 e^{−2β}; unloading by δ it falls by c δ, and loading again it comes back to the same point. */
 static void a_yielded_bond_unloads_along_its_stiffness(void) {
     arena *memory = arena_create("pair");
@@ -267,6 +290,7 @@ static void cracks_stay_under_the_rayleigh_speed(void) {
 
 int main(void) {
     RUN(a_bond_breaks_at_its_stretch_and_never_heals);
+    RUN(a_broken_bond_lets_nothing_through);
     RUN(a_yielded_bond_unloads_along_its_stiffness);
     RUN(a_hot_free_sheet_does_not_break);
     RUN(the_work_of_separation_is_the_toughness);

@@ -83,6 +83,13 @@ static const record *find_colour(const record_list *records) {
     return found;
 }
 
+/* A quantity without a natural range is shown over its largest value. */
+static void scale_colour(float *value, int64_t count) {
+    float most = 0;
+    for (int64_t i = 0; i < count; i++) most = fmaxf(most, value[i]);
+    for (int64_t i = 0; i < count && most > 0; i++) value[i] /= most;
+}
+
 /* Widens the box by a frame's particles. */
 static void widen(const record_list *records, float low[3], float high[3]) {
     const record *position = find_position(records);
@@ -118,6 +125,7 @@ static status draw(const render_options *o, const record_list *records, view_ren
     if (o->colour && (!value || value->components != 1))
         return report_input(r, NULL, 0, "--colour", "a field of the frame with one component, such as solid/damage or sheet/diffused", o->colour, NULL);
     float *points = as_floats(position), *values = as_floats(value);
+    if (values && strcmp(value->name, "sheet/diffused") == 0) scale_colour(values, value->count);
     size_t bytes = (size_t)look->width * (size_t)look->height * 3;
     uint8_t *rgb = memory_allocate(bytes);
     status code = points && rgb ? STATUS_OK : report_set(r, STATUS_SYSTEM, "out of memory for the picture, or a frame without particles");

@@ -97,11 +97,11 @@ static void fill_points(session *s, const double *position, const double *damage
     if (first) fill_bounds(p);
 }
 
-/* Colours run from 0 to 1: a quantity that exceeds 1 is shown over its largest value. */
+/* Colours run from 0 to 1: a quantity without a natural range is shown over its largest value. */
 static void scale_colour(double *value, int64_t count) {
-    double most = 1;
+    double most = 0;
     for (int64_t i = 0; i < count; i++) most = value[i] > most ? value[i] : most;
-    for (int64_t i = 0; i < count && most > 1; i++) value[i] /= most;
+    for (int64_t i = 0; i < count && most > 0; i++) value[i] /= most;
 }
 
 status publish_frame(session *s, report *r) {
@@ -111,7 +111,7 @@ status publish_frame(session *s, report *r) {
     if (code == STATUS_OK) {
         simulation_read(s->simulation, "position", position);
         bool damaged = simulation_read(s->simulation, simulation_picture_field(s->simulation), damage) > 0;
-        if (damaged) scale_colour(damage, s->shown.particles);
+        if (damaged && strcmp(simulation_picture_field(s->simulation), "diffused") == 0) scale_colour(damage, s->shown.particles);
         pthread_mutex_lock(&s->lock);
         session_snapshot *p = &s->shown;
         code = reserve_points(p, p->particles, r);

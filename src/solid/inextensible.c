@@ -29,7 +29,7 @@ enum { ITERATION_LIMIT = 2000, SET_ROUNDS = 4 };
 /* Tensions that alternate from cell to cell pull at nothing: left alone they grow without bound, keep conjugate gradients busy and
  * shorten the step. This share of the diagonal damps them; what it lets through of the others, the correction below takes back.
  * (A rope under 1000 times Fig. 21's load: 1e-6 diverges, 1e-4 keeps its length to 5e-4, 1e-3 to 7e-3.) */
-#define REGULARISATION ((real)1e-4)
+#define REGULARISATION ((real)5e-5)
 
 /* A fibre's stretch is taken back within half the time that the matrix needs to carry a wave over a cell, so that what tolerance and time
  * steps let through does not add up; at most this share in one step, and beyond the most that is corrected at once it is pulled back gently. (A

@@ -15,7 +15,7 @@ static void declare(solid *s, int material, const effect_values *all) {
     s->constraint.relaxation[material] = (real)own->value[KEY_RELAXATION][0];
     double mu = 0, lambda = 0, lame_lambda;
     solid_elastic_moduli(all, &mu, &lambda, &lame_lambda);
-    s->constraint.recovery[material] = (real)(2 * sqrt((lambda + 2 * mu) / s->definition.materials[material].density) / s->definition.dx);
+    s->constraint.recovery[material] = (real)(20 * sqrt((lambda + 2 * mu) / s->definition.materials[material].density) / s->definition.dx);
     s->constraint.solver = (int)own->value[KEY_SOLVER][0];
     if (own->value[KEY_TOLERANCE][0] < s->constraint.tolerance) s->constraint.tolerance = own->value[KEY_TOLERANCE][0];
 }

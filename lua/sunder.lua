@@ -47,8 +47,12 @@ end
 
 --- A material says its density and names the effects that it has. `false` leaves an effect out, `true` takes its
 --- defaults.
+--- A number, or a function of place that is asked once for each particle, at the start. Density, E, sigma_c, break_stretch, eta
+--- and gamma may be one.
+---@alias OfParticle number|fun(x: number, y: number, z: number): number
+
 ---@class Material
----@field density number
+---@field density OfParticle
 ---@field name? string
 ---@field [string] table|boolean|number  effect = { key = value, … }
 

@@ -159,6 +159,23 @@ function s.scene(scene)
   return core.scene(scene)
 end
 
+---@class Sweep
+---@field scene string  a path from the sweep's folder
+---@field over table<string, (number|string|boolean)[]>  names as --set takes them, each with its values; all combinations are run
+---@field set? table<string, number|string|boolean>  the same in every run
+---@field title? string
+---@field recipe? string
+---@field frames? integer  all of the scene's if absent
+
+--- Runs of one scene over lists of values: what a file for `sunder sweep` returns.
+---
+---     return s.sweep { scene = "scenes/solid/sigma_eta.lua", over = { break_stretch = { 0.1, 0.2 }, eta = { 0.02, 0.1 } } }
+---@param sweep Sweep
+---@return Sweep
+function s.sweep(sweep)
+  return core.sweep(sweep)
+end
+
 --- A material from recipes/NAME.lua (beside the scene, in a folder above it, or in $SUNDER_RECIPES; a name that ends
 --- in .lua is a path from the scene). Overrides replace single keys; `effect = false` turns an effect off.
 ---

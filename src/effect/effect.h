@@ -47,7 +47,6 @@ typedef struct effect_field {
     int components;
     const char *unit;
     bool written; /* in frames, not only in checkpoints */
-    bool optional; /* only where the definition brings its values (solid_definition.given) */
     const char *doc;
 } effect_field;
 

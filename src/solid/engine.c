@@ -38,6 +38,13 @@ static bool is_given(const solid *s, const char *field) {
     return false;
 }
 
+static bool scales_parameter(const char *field) {
+    for (int e = 0; e < SOLID_EFFECTS; e++)
+        for (int k = 0; k < effects[e]->parameter_count; k++)
+            if (effects[e]->parameters[k].scale && strcmp(effects[e]->parameters[k].scale, field) == 0) return true;
+    return false;
+}
+
 /* Only the fields of effects that are on; a second fibre family only where there is one, and what scales parameters only where the
  * definition brings it. */
 static void plan_fields(solid *s) {
@@ -51,7 +58,7 @@ static void plan_fields(solid *s) {
             const effect_field *f = &effects[e]->fields[i];
             if (strcmp(f->key, "fibre") == 0 && !s->definition.fibre1) continue;
             if (strcmp(f->key, "fibre2") == 0 && !s->definition.fibre2) continue;
-            if (f->optional && !is_given(s, f->key)) continue;
+            if (scales_parameter(f->key) && !is_given(s, f->key)) continue;
             add_field(s, f->key, f->components);
         }
     if (is_given(s, "density_scale")) add_field(s, "density_scale", 1);

@@ -118,7 +118,7 @@ static const parameter parameters[] = {
 };
 
 static const effect_field fields[] = {
-    {.key = "stiffness_scale", .components = 1, .unit = "1", .written = true, .optional = true, .doc = "E over its material's, where it varies"},
+    {.key = "stiffness_scale", .components = 1, .unit = "1", .written = true, .doc = "E over its material's, where it varies"},
 };
 
 static const effect_measure measures[] = {

@@ -315,8 +315,8 @@ static const effect_field fields[] = {
     {.key = "damage_history", .components = 1, .unit = "1", .written = false, .doc = "largest driving force so far"},
     {.key = "fibre", .components = 3, .unit = "1", .written = true, .doc = "first fibre direction at rest, unit"},
     {.key = "fibre2", .components = 3, .unit = "1", .written = true, .doc = "second fibre direction at rest, unit"},
-    {.key = "toughness_scale", .components = 1, .unit = "1", .written = true, .optional = true, .doc = "sigma_c over its material's, where it varies"},
-    {.key = "viscosity_scale", .components = 1, .unit = "1", .written = true, .optional = true, .doc = "eta over its material's, where it varies"},
+    {.key = "toughness_scale", .components = 1, .unit = "1", .written = true, .doc = "sigma_c over its material's, where it varies"},
+    {.key = "viscosity_scale", .components = 1, .unit = "1", .written = true, .doc = "eta over its material's, where it varies"},
 };
 
 static const effect_measure measures[] = {

@@ -97,7 +97,7 @@ static const parameter parameters[] = {
 static const effect_field fields[] = {
     {.key = "fibre", .components = 3, .unit = "1", .written = true, .doc = "first fibre direction at rest, unit"},
     {.key = "fibre2", .components = 3, .unit = "1", .written = true, .doc = "second fibre direction at rest, unit"},
-    {.key = "gamma_scale", .components = 1, .unit = "1", .written = true, .optional = true,
+    {.key = "gamma_scale", .components = 1, .unit = "1", .written = true,
      .doc = "gamma, and gamma2, over their material's, where gamma varies"},
 };
 

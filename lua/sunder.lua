@@ -47,8 +47,12 @@ end
 
 --- A material says its density and names the effects that it has. `false` leaves an effect out, `true` takes its
 --- defaults.
+--- A number, or a function of place that is asked once for each particle, at the start. Density, E, sigma_c, break_stretch, eta
+--- and gamma may be one.
+---@alias OfParticle number|fun(x: number, y: number, z: number): number
+
 ---@class Material
----@field density number
+---@field density OfParticle
 ---@field name? string
 ---@field [string] table|boolean|number  effect = { key = value, … }
 
@@ -157,6 +161,23 @@ end
 ---@return Scene
 function s.scene(scene)
   return core.scene(scene)
+end
+
+---@class Sweep
+---@field scene string  a path from the sweep's folder
+---@field over table<string, (number|string|boolean)[]>  names as --set takes them, each with its values; all combinations are run
+---@field set? table<string, number|string|boolean>  the same in every run
+---@field title? string
+---@field recipe? string
+---@field frames? integer  all of the scene's if absent
+
+--- Runs of one scene over lists of values: what a file for `sunder sweep` returns.
+---
+---     return s.sweep { scene = "scenes/solid/sigma_eta.lua", over = { break_stretch = { 0.1, 0.2 }, eta = { 0.02, 0.1 } } }
+---@param sweep Sweep
+---@return Sweep
+function s.sweep(sweep)
+  return core.sweep(sweep)
 end
 
 --- A material from recipes/NAME.lua (beside the scene, in a folder above it, or in $SUNDER_RECIPES; a name that ends

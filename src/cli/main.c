@@ -13,6 +13,8 @@ static const command commands[] = {
     {"run", "run SCENE [options]", "simulate a scene: frames, ledger row, live screen with --tui", command_run},
     {"check", "check SCENE [--set KEY=VALUE]… [--recipe NAME] [--json]", "validate a scene without running it", command_check},
     {"explain", "explain SCENE [--set KEY=VALUE]… [--json]", "show the plan: effects, fields, bytes, step limits, cost", command_explain},
+    {"sweep", "sweep SCRIPT.lua [-j N] [--set KEY=VALUE]… [--frames N] [--threads N] [--db FILE] [--json] [--quiet]",
+     "run a scene over lists of values; what is done already is left out", command_sweep},
     {"runs", "runs list | show RUN | diff RUN RUN [--db FILE] [--json]", "ask the ledger about past runs", command_runs},
     {"render", "render RUN [--frame N] [--out FILE.png] [--width N] [--height N] [--yaw D] [--pitch D] [--zoom PERCENT]", "draw a frame", command_render},
     {"doctor", "doctor [--json]", "say what this machine and this build can do", command_doctor},

@@ -36,6 +36,8 @@ typedef struct parameter {
     bool logarithmic; /* a slider should step it by factors */
     bool required;    /* naming the effect without this key (or its twin) is an error */
     const char *twin; /* another key of the same effect that says the same thing: the one set last holds, both is an error */
+    const char *scale; /* the field that scales this parameter from particle to particle, where a scene gives a function of place; NULL: one
+                        * value a material */
     const char *short_form; /* the effect may be written as a bare value or array meaning this key (any non-NULL text) */
 } parameter;
 

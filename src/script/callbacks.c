@@ -59,7 +59,7 @@ static void read_results(lua_State *L, request *q, int first) {
     char expected[96], found[160];
     q->results = spread_vector(L, first);
     bool any = q->outputs < 0;
-    snprintf(expected, sizeof expected, any ? "three numbers, or six for two families" : q->outputs == 1 ? "%d finite number" : "%d finite numbers",
+    snprintf(expected, sizeof expected, any ? "three numbers, or six for two families" : q->outputs == 1 ? "a finite number" : "%d finite numbers",
              q->outputs);
     if (any ? q->results != 3 && q->results != 6 : q->results != q->outputs) {
         snprintf(found, sizeof found, "%d result%s", q->results, q->results == 1 ? "" : "s");
@@ -226,8 +226,53 @@ static void try_places(script *s, const scene_function *f, double points[PLACE_C
         if (!try_once(s, f, points[i], 3)) return;
 }
 
+/* The material's own value: the largest that the function gives at some points of a body. */
+static void try_variation(script *s, scene_material *m, const scene_variation *v, double points[PLACE_CALLS][3], int count) {
+    double *own = v->effect < 0 ? &m->density : m->effects[v->effect].value[v->key], value, largest = 0;
+    for (int i = 0; i < count; i++) {
+        report r;
+        if (v->function.call(v->function.context, points[i], 3, &value, 1, &r) != STATUS_OK) {
+            problem_report(s, &r);
+            return;
+        }
+        if (value > largest) largest = value;
+    }
+    if (largest > 0) {
+        *own = largest;
+        return;
+    }
+    const callback *c = v->function.context;
+    report r;
+    report_input(&r, c->file, c->line, c->key, "a function that is above 0", "one that is not, inside the body", NULL);
+    problem_report(s, &r);
+}
+
+static void try_variations(script *s) {
+    scene *sc = s->scene;
+    bool done[SCENE_MATERIALS] = {false};
+    for (int i = 0; i < sc->body_count; i++) {
+        const scene_body *b = &sc->bodies[i];
+        if (!b->shape || b->material < 0 || done[b->material]) continue;
+        scene_material *m = &sc->materials[b->material];
+        done[b->material] = true;
+        if (m->variation_count == 0) continue;
+        double points[PLACE_CALLS][3];
+        int count = points_inside(b->shape, points);
+        for (int v = 0; v < m->variation_count; v++) try_variation(s, m, &m->variations[v], points, count);
+    }
+    for (int i = 0; i < sc->sheet_count; i++) {
+        int row = sc->sheets[i].material;
+        if (row < 0 || sc->materials[row].variation_count == 0) continue;
+        const callback *c = sc->materials[row].variations[0].function.context;
+        report r;
+        report_input(&r, c->file, c->line, c->key, "a number: parameters of sheets do not vary in place", "a function", NULL);
+        problem_report(s, &r);
+    }
+}
+
 void try_functions(script *s) {
     scene *sc = s->scene;
+    try_variations(s);
     for (int i = 0; i < sc->body_count; i++) {
         scene_body *b = &sc->bodies[i];
         if (!b->shape || (!is_lua(&b->velocity) && !is_lua(&b->start) && !is_lua(&b->fibres.direction))) continue;

@@ -100,7 +100,7 @@ struct script {
 
 /* Keys of the registry (lua_rawsetp). */
 extern const char KEY_FROZEN, KEY_ENVIRONMENT, KEY_GLOBALS, KEY_MODULES, KEY_RECIPES, KEY_ORIGINS, KEY_MATERIALS,
-    KEY_SCENE, KEY_FUNCTIONS, KEY_WATCHED;
+    KEY_SCENE, KEY_SWEEP, KEY_FUNCTIONS, KEY_WATCHED;
 
 /* Names of metatables (luaL_newmetatable). */
 #define META_REPORT "sunder.report"
@@ -297,6 +297,11 @@ void read_scene(lua_State *L, const char *file);
 /* ---- sheets.c ---- */
 /* Reads one of `sheets`. */
 void read_sheet(script *s, int index, const place *p, int number);
+
+/* ---- sweep.c ---- */
+/* Reads the table that a sweep's file returned (top of the stack); `path` is where the file is, from the working folder. */
+struct sweep;
+void read_sweep(lua_State *L, const char *path, const char *file, struct sweep *out);
 
 /* ---- settings.c ---- */
 /* Applies what s.params did not take: scene keys and knobs. Unknown keys are recorded. */

@@ -39,13 +39,27 @@ bool set_effect_parameter(const effect *e, int key, plain_value *v, effect_value
     return true;
 }
 
-static void read_parameter(script *s, int index, const place *p, const effect *e, int key, effect_values *values) {
+/* Whether a parameter, or the density, is written as a function of place; it is then kept with its material. */
+static bool read_variation(script *s, int index, const place *p, int effect_at, int key, scene_material *m) {
+    if (!m || !lua_isfunction(s->L, index)) return false;
+    if (m->variation_count == SCENE_VARIATIONS) {
+        problem_place(s, p, "at most 8 functions of place in a material", "more", NULL);
+        return true;
+    }
+    scene_variation *v = &m->variations[m->variation_count++];
+    *v = (scene_variation){.effect = effect_at, .key = key};
+    make_callback(s, index, p, 1, &v->function);
+    return true;
+}
+
+static void read_parameter(script *s, int index, const place *p, const effect *e, int key, effect_values *values, scene_material *m) {
+    values->given[key] = true; /* wrong or not, it was said: it is not missing as well */
+    if (e->parameters[key].scale && read_variation(s, index, p, effect_index(e->name), key, m)) return;
     plain_value v = plain_from_lua(s->L, index);
     char expected[256];
     const char *nearest;
     if (!set_effect_parameter(e, key, &v, values, expected, sizeof expected, &nearest))
         problem_place(s, p, expected, v.found, nearest);
-    values->given[key] = true; /* wrong or not, it was said: it is not missing as well */
 }
 
 /* ---- one effect -------------------------------------------------------------------------------------------------- */
@@ -65,7 +79,7 @@ static void list_keys(const effect *e, char *text, size_t size) {
 
 /* The keys of a table, by name. `origin` tells which of them came as overrides; NULL when there are none. */
 static void read_effect_table(script *s, int index, const place *p, const material_origin *origin, const effect *e,
-                              effect_values *values) {
+                              effect_values *values, scene_material *m) {
     lua_State *L = s->L;
     int names = push_sorted_names(s, index, p), list = lua_gettop(L);
     const char *keys[PARAMETER_LIMIT];
@@ -87,7 +101,7 @@ static void read_effect_table(script *s, int index, const place *p, const materi
         lua_pushvalue(L, -1);
         lua_rawget(L, index);
         if (key >= 0)
-            read_parameter(s, -1, &at, e, key, values);
+            read_parameter(s, -1, &at, e, key, values, m);
         else
             problem_place(s, &at, expected, "a key that does not exist", name_nearest(name, keys, e->parameter_count));
         lua_settop(L, list);
@@ -96,7 +110,7 @@ static void read_effect_table(script *s, int index, const place *p, const materi
 }
 
 static void read_effect_from(script *s, int index, const place *p, const material_origin *origin, const effect *e,
-                             effect_values *values, effect_site *site) {
+                             effect_values *values, effect_site *site, scene_material *m) {
     lua_State *L = s->L;
     index = lua_absindex(L, index);
     *site = (effect_site){p->file, place_line(s, p)};
@@ -108,16 +122,16 @@ static void read_effect_from(script *s, int index, const place *p, const materia
     if (v.kind == PLAIN_BOOLEAN) {
         values->on = v.number[0] != 0;
     } else if (bare >= 0 && (!lua_istable(L, index) || listed)) {
-        read_parameter(s, index, p, e, bare, values);
+        read_parameter(s, index, p, e, bare, values, m);
     } else {
         char expected[256];
         list_keys(e, expected, sizeof expected);
-        if (read_table(s, index, p, expected)) read_effect_table(s, index, p, origin, e, values);
+        if (read_table(s, index, p, expected)) read_effect_table(s, index, p, origin, e, values, m);
     }
 }
 
 void read_effect(script *s, int index, const place *p, const effect *e, effect_values *values, effect_site *site) {
-    read_effect_from(s, index, p, NULL, e, values, site);
+    read_effect_from(s, index, p, NULL, e, values, site, NULL);
 }
 
 /* ---- one material ------------------------------------------------------------------------------------------------ */
@@ -147,6 +161,7 @@ static void report_unknown(script *s, const place *p, const char *name) {
 }
 
 static void read_density(script *s, int index, const place *p, scene_material *m) {
+    if (read_variation(s, index, p, -1, 0, m)) return;
     plain_rule rule = {.kind = PLAIN_NUMBER, .minimum = 0, .maximum = HUGE_VAL, .above = true};
     plain_value v;
     if (read_plain(s, index, p, &rule, &v)) m->density = v.number[0];
@@ -189,7 +204,7 @@ static void read_material_key(script *s, const char *name, const material_origin
         plain_value v;
         if (read_plain(s, -1, &p, &rule, &v)) snprintf(wanted, SCRIPT_TEXT, "%s", v.text);
     } else if (e >= 0 && catalogue_entry(e)->scope == SCOPE_MATERIAL) {
-        read_effect_from(s, -1, &p, o, catalogue_entry(e), &m->effects[e], &s->sites[row][e]);
+        read_effect_from(s, -1, &p, o, catalogue_entry(e), &m->effects[e], &s->sites[row][e], m);
     } else {
         report_unknown(s, &p, name);
     }

@@ -8,19 +8,29 @@
 extern const unsigned char sunder_lua[];
 extern const unsigned long sunder_lua_size;
 
-/* core.scene(table): remembers the table and the line it was made on; gives it back. */
-static int api_scene(lua_State *L) {
+/* Remembers the table at 1, as what its key says, and the line it was made on; gives it back. */
+static int mark_table(lua_State *L, const void *key, const char *expected) {
     script *s = script_of(L);
     char found[80];
     describe_value(L, 1, found, sizeof found);
-    if (lua_type(L, 1) != LUA_TTABLE) throw_place(L, &s->here, "a table with the scene's keys", found, NULL);
+    if (lua_type(L, 1) != LUA_TTABLE) throw_place(L, &s->here, expected, found, NULL);
     lua_settop(L, 1);
-    lua_rawgetp(L, LUA_REGISTRYINDEX, &KEY_SCENE);
+    lua_rawgetp(L, LUA_REGISTRYINDEX, key);
     lua_pushvalue(L, 1);
     lua_pushinteger(L, s->here.line);
     lua_rawset(L, 2);
     lua_settop(L, 1);
     return 1;
+}
+
+/* core.scene(table) */
+static int api_scene(lua_State *L) {
+    return mark_table(L, &KEY_SCENE, "a table with the scene's keys");
+}
+
+/* core.sweep(table) */
+static int api_sweep(lua_State *L) {
+    return mark_table(L, &KEY_SWEEP, "a table with the sweep's keys");
 }
 
 /* core.twin(effect, key): the key of the same effect that says the same thing, or nil. */
@@ -96,11 +106,14 @@ void module_open(lua_State *L) {
         {"params", api_params}, {"choice", api_choice}, {"scene", api_scene},     {"recipe", api_recipe},
         {"twin", api_twin},     {"shape", api_shape},   {"combine", api_combine}, {"translate", api_translate},
         {"rotate", api_rotate}, {"scale", api_scale},   {"fibres", api_fibres},   {"mesh", api_mesh},
+        {"sweep", api_sweep},
         {NULL, NULL},
     };
     int base = lua_gettop(L);
     lua_newtable(L);
     lua_rawsetp(L, LUA_REGISTRYINDEX, &KEY_SCENE);
+    lua_newtable(L);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &KEY_SWEEP);
     int outcome = luaL_loadbufferx(L, (const char *)sunder_lua, sunder_lua_size, "=sunder", "t");
     if (outcome == LUA_ERRMEM) throw_memory(L);
     if (outcome != LUA_OK) lua_error(L);

@@ -80,7 +80,7 @@ static void put_parameter(text_out *out, const scene_parameter *p) {
     put_text(out, ",\n");
 }
 
-/* Derived halves of twins are left out: the given half pins both. */
+/* Derived halves of twins are left out: the given half pins both. So is what a function of place gives: the function says it again. */
 static void put_all(const script *s, const bool *derived, text_out *out) {
     put_text(out, "-- Every parameter of this run.\nreturn {\n");
     for (int i = 0; i < s->scene->parameter_count; i++)
@@ -99,6 +99,13 @@ static void write_text(script *s, const bool *derived) {
 
 /* ---- the list ---------------------------------------------------------------------------------------------------- */
 
+static bool varies(const script *s, int row, int index, int key) {
+    const scene_material *m = &s->scene->materials[row];
+    for (int v = 0; row < SCENE_SITE && v < m->variation_count; v++)
+        if (m->variations[v].effect == index && m->variations[v].key == key) return true;
+    return false;
+}
+
 /* The parameters of one effect; the name is prefix.effect.key. */
 static bool list_effect(script *s, int row, int index, bool *derived) {
     int count;
@@ -113,7 +120,7 @@ static bool list_effect(script *s, int row, int index, bool *derived) {
         snprintf(p->name, sizeof p->name, "%s%s%s.%s", row == SCENE_SITE ? "" : s->scene->materials[row].name,
                  row == SCENE_SITE ? "" : ".", e->name, e->parameters[k].key);
         p->from_set = s->knob_set[row][index][k];
-        derived[p - s->scene->parameters] = e->parameters[k].twin && !values->given[k];
+        derived[p - s->scene->parameters] = (e->parameters[k].twin && !values->given[k]) || varies(s, row, index, k);
     }
     return true;
 }
@@ -129,6 +136,7 @@ static bool list_material(script *s, int row, bool *derived) {
     memcpy(name, m->name, sizeof name);
     snprintf(p->name, sizeof p->name, "%.63s.density", name);
     p->from_set = s->density_set[row];
+    derived[p - s->scene->parameters] = varies(s, row, -1, 0);
     for (int e = 0; e < count; e++)
         if (!list_effect(s, row, e, derived)) return false;
     return true;

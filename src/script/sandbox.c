@@ -13,7 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
-const char KEY_FROZEN, KEY_ENVIRONMENT, KEY_GLOBALS, KEY_MODULES, KEY_RECIPES, KEY_ORIGINS, KEY_MATERIALS, KEY_SCENE,
+const char KEY_FROZEN, KEY_ENVIRONMENT, KEY_GLOBALS, KEY_MODULES, KEY_RECIPES, KEY_ORIGINS, KEY_MATERIALS, KEY_SCENE, KEY_SWEEP,
     KEY_FUNCTIONS, KEY_WATCHED;
 
 /* ---- wrapped tables ---------------------------------------------------------------------------------------------- */

@@ -1,4 +1,5 @@
 #include "script/internal.h"
+#include "script/sweep.h"
 
 #include "base/memory.h"
 
@@ -32,13 +33,13 @@ static int load_protected(lua_State *L) {
     return 0;
 }
 
-static void run_loading(script *s, const char *path, const script_options *options) {
-    load_request q = {path, options};
+/* Calls a function with one pointer; what goes wrong is recorded. */
+static void run_protected(script *s, lua_CFunction call, void *request) {
     lua_State *L = s->L;
     guard_begin(&s->guard);
     lua_pushcfunction(L, error_handler);
-    lua_pushcfunction(L, load_protected);
-    lua_pushlightuserdata(L, &q);
+    lua_pushcfunction(L, call);
+    lua_pushlightuserdata(L, request);
     int outcome = lua_pcall(L, 1, 0, 1);
     report r;
     if (outcome != LUA_OK && error_take(s, outcome, &r) != STATUS_OK) problem_report(s, &r);
@@ -130,7 +131,8 @@ status script_load(const char *path, const script_options *options, script **out
         reports->count = 1;
         return report_set(&reports->items[0], STATUS_SYSTEM, "out of memory while %s was loaded", path);
     }
-    run_loading(s, path, options);
+    load_request q = {path, options};
+    run_protected(s, load_protected, &q);
     finish_loading(s);
     s->reports = NULL;
     if (s->problem_count == 0) {
@@ -140,6 +142,39 @@ status script_load(const char *path, const script_options *options, script **out
     sort_reports(s, reports);
     script_close(s);
     return reports->items[0].code;
+}
+
+typedef struct sweep_request {
+    const char *path;
+    sweep *out;
+} sweep_request;
+
+static int load_sweep_protected(lua_State *L) {
+    const sweep_request *q = lua_touserdata(L, 1);
+    luaL_checkstack(L, 4 * API_STACK, "loading");
+    sandbox_open(L);
+    const source_file *file = load_scene_file(L, q->path);
+    snprintf(script_of(L)->scene->file, sizeof script_of(L)->scene->file, "%s", file->display);
+    lua_call(L, 0, 1);
+    read_sweep(L, q->path, file->display, q->out);
+    return 0;
+}
+
+status sweep_load(const char *path, sweep *out, script_reports *reports) {
+    script_options options = script_options_default();
+    reports->count = 0;
+    script *s = create(&options, reports);
+    if (!s) {
+        reports->count = 1;
+        return report_set(&reports->items[0], STATUS_SYSTEM, "out of memory while %s was loaded", path);
+    }
+    sweep_request q = {path, out};
+    run_protected(s, load_sweep_protected, &q);
+    s->reports = NULL;
+    bool fine = s->problem_count == 0;
+    if (!fine) sort_reports(s, reports);
+    script_close(s);
+    return fine ? STATUS_OK : reports->items[0].code;
 }
 
 scene *script_scene(script *s) {

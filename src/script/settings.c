@@ -154,6 +154,16 @@ static void report_ambiguous(script *s, const script_override *o, const knob_sea
     report_setting(s, o, expected, "a name that several materials or effects have", NULL);
 }
 
+/* A value that is set takes the place of a function, its own or its twin's. */
+static void drop_variation(scene_material *m, int effect_index_, int key, int twin) {
+    int kept = 0;
+    for (int v = 0; v < m->variation_count; v++) {
+        const scene_variation *old = &m->variations[v];
+        if (old->effect != effect_index_ || (old->key != key && old->key != twin)) m->variations[kept++] = *old;
+    }
+    m->variation_count = kept;
+}
+
 static void set_density(script *s, const script_override *o, knob k) {
     plain_value v = plain_from_text(o->value);
     plain_rule rule = {.kind = PLAIN_NUMBER, .minimum = 0, .maximum = HUGE_VAL, .above = true};
@@ -164,6 +174,7 @@ static void set_density(script *s, const script_override *o, knob k) {
         return;
     }
     s->scene->materials[k.row].density = v.number[0];
+    drop_variation(&s->scene->materials[k.row], -1, 0, -1);
     s->density_set[k.row] = s->density_set[k.row] || !o->pinned;
 }
 
@@ -188,6 +199,7 @@ static void set_knob(script *s, const script_override *o, knob k) {
     const char *twin_name = e->parameters[k.key].twin;
     int twin = twin_name ? effect_parameter(e, twin_name) : -1;
     if (twin >= 0) values->given[twin] = set[twin] = false;
+    if (k.row < SCENE_SITE) drop_variation(&s->scene->materials[k.row], k.effect, k.key, twin);
 }
 
 static void apply_knob(script *s, const script_override *o) {

@@ -57,7 +57,6 @@ status request_from_options(run_request *q, const session_options *options, repo
 status request_write(const session *s, report *r);
 status request_read(run_request *q, const char *folder, report *r);
 status sources_write(const session *s, report *r);
-void sources_hash(const script *from, char hash[32]);
 
 /* publish.c */
 void publish_start(session *s);

@@ -89,6 +89,9 @@ bool session_wait(session *s, double seconds);
 status session_outcome(session *s, report *r);
 const char *session_summary(session *s);
 
+/* A run's identity, as the ledger has it in scene_hash: of every source and every resolved parameter; hexadecimal. */
+void sources_hash(const script *from, char hash[32]);
+
 /* Stops if needed, joins the thread, closes ledger and script. */
 void session_destroy(session *s);
 

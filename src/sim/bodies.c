@@ -1,6 +1,7 @@
 #include "sim/bodies.h"
 
 #include "geom/fibres.h"
+#include "sim/variations.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -41,6 +42,11 @@ static status allocate(body_particles *p, bool fibre1, bool fibre2, bool notched
     return report_set(r, STATUS_SYSTEM, "out of memory for %lld particles", (long long)n);
 }
 
+void bodies_free_given(body_particles *p) {
+    for (int g = 0; g < p->given_count; g++) memory_free(p->given[g], p->given[g] ? (size_t)p->count * sizeof(double) : 0);
+    p->given_count = 0;
+}
+
 void bodies_free(body_particles *p) {
     size_t n = (size_t)p->count, owners = p->element_count ? (size_t)p->element_count : n, row_bytes = 3 * sizeof(double) * n;
     memory_free(p->position, row_bytes);
@@ -53,6 +59,7 @@ void bodies_free(body_particles *p) {
     memory_free(p->fibre2, 3 * sizeof(double) * owners);
     memory_free(p->corner, 4 * sizeof(int32_t) * (size_t)p->element_count);
     memory_free(p->damage, n * sizeof(double));
+    bodies_free_given(p);
     memset(p, 0, sizeof *p);
 }
 
@@ -135,6 +142,7 @@ status bodies_sample(const scene *s, body_particles *out, report *r) {
         first += points[b].count;
         point_set_free(&points[b]);
     }
+    if (code == STATUS_OK) code = variations_evaluate(s, out, r);
     if (code != STATUS_OK) bodies_free(out);
     return code;
 }

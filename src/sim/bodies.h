@@ -3,6 +3,7 @@
 #define SUNDER_SIM_BODIES_H
 
 #include "sim/scene.h"
+#include "solid/solid.h"
 
 /* Particles of all bodies, in the order of bodies and of sampling; the index is the particle's id for ever. */
 typedef struct body_particles {
@@ -12,6 +13,9 @@ typedef struct body_particles {
     double *volume;              // [count]
     double *fibre1, *fibre2;     // [count][3], NULL when no body has that family
     double *damage;              // [count], 1 inside a notch, else 0; NULL when no body has notches
+    int given_count;
+    const char *given_field[SOLID_GIVEN];
+    double *given[SOLID_GIVEN];  // [count], what a parameter that varies in place is to its material's
     uint8_t *material, *body;    // [count]; material index, plus the number of materials where a grip protects the particle
     /* Bodies of tetrahedra: particles are vertices; fibres and materials are the elements', [element_count]. */
     int64_t element_count; // 0: particles
@@ -25,7 +29,10 @@ status bodies_set_fibres(const scene *s, const scene_body *b, const double x[3],
 /* Fills the bodies with tetrahedra of the edge out->spacing (tetra_bodies.c). Errors as bodies_sample. */
 status tetra_bodies_fill(const scene *s, body_particles *out, report *r);
 
-/* Samples everything. Errors: a body without volume or particles, a fibre direction that is zero (with the place), notches
+/* Gives back what scales parameters; the engine has its copy. */
+void bodies_free_given(body_particles *p);
+
+/* Samples everything. Errors: a parameter that varies out of its range (with the place), a body without volume or particles, a fibre direction that is zero (with the place), notches
  * that hold no particle, memory. */
 status bodies_sample(const scene *s, body_particles *out, report *r);
 void bodies_free(body_particles *p);

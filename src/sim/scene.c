@@ -186,6 +186,8 @@ static status check_discretisation(const scene *s, const scene_body *b, report *
         return report_input(r, s->file, 0, "discretisation", "the same for all bodies of a scene (tetrahedra live without a grid)", "particles and tetrahedra", NULL);
     if (!tetrahedra && b->start.outputs)
         return report_input(r, s->file, 0, "start", "discretisation = \"tetrahedra\" beside it (particles start at rest)", "particles", NULL);
+    if (tetrahedra && m->variation_count > 0)
+        return report_input(r, m->file, m->line, "function", "constants (functions of place are for bodies of particles)", "a function of place beside discretisation = \"tetrahedra\"", NULL);
     for (int e = 0; e < count && tetrahedra; e++) {
         if (!m->effects[e].on || effects[e]->engine != ENGINE_SOLID || solid_tetra_find(64, "plain")->knows(effects[e])) continue;
         char found[128];

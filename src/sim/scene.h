@@ -14,7 +14,7 @@
 
 #include <stdint.h>
 
-enum { SCENE_MATERIALS = 16, SCENE_BODIES = 32, SCENE_GRIPS = 32, SCENE_COLLIDERS = 32, SCENE_NOTCHES = 64, SCENE_PARAMETERS = 512 };
+enum { SCENE_MATERIALS = 16, SCENE_BODIES = 32, SCENE_GRIPS = 32, SCENE_COLLIDERS = 32, SCENE_NOTCHES = 64, SCENE_VARIATIONS = 8, SCENE_PARAMETERS = 512 };
 enum { SCENE_SHEETS = 16, SHEET_CUTS = 16, SHEET_FEEDS = 16 }; /* sheets; notches and sources of each */
 
 /* A constant, or a function of `inputs` reals (time, or x y z) giving `outputs` reals. */
@@ -28,10 +28,20 @@ typedef struct scene_function {
 /* Evaluates a function; a result that is not finite is an input error. */
 status scene_function_evaluate(const scene_function *f, const double *input, int inputs, double *output, report *r);
 
+/* A parameter of a material that varies in place: asked once for each particle, at the start. The material's own value is then the
+ * largest that the function was seen to give inside a body, and every particle has its share of it. */
+typedef struct scene_variation {
+    int effect; /* index in effect_catalogue(); −1: the density */
+    int key;    /* index of the effect's parameter */
+    scene_function function; /* of place: 1 output */
+} scene_variation;
+
 typedef struct scene_material {
     char name[64];
     double density;             /* mass/length^3, > 0 */
     effect_values effects[EFFECT_LIMIT]; /* by index in effect_catalogue() */
+    int variation_count;
+    scene_variation variations[SCENE_VARIATIONS];
     char file[256];             /* where it was defined, for messages */
     int line;
 } scene_material;

@@ -34,6 +34,8 @@ static void define(simulation *s, int threads, solid_definition *d) {
                             .volume = s->particles.volume, .fibre1 = s->particles.fibre1, .fibre2 = s->particles.fibre2,
                             .damage = s->particles.damage, .material = s->particles.material, .element_count = s->particles.element_count,
                             .corner = s->particles.corner, .start = s->particles.start};
+    for (int g = 0; g < s->particles.given_count; g++)
+        d->given[d->given_count++] = (solid_given){s->particles.given_field[g], s->particles.given[g]};
     int gravity = effect_index("gravity"), damping = effect_index("mass_damping");
     if (from_scene->effects[gravity].on) memcpy(d->gravity, from_scene->effects[gravity].value[0], sizeof d->gravity);
     if (from_scene->effects[damping].on) d->damping = from_scene->effects[damping].value[0][0];
@@ -74,9 +76,9 @@ static void make_plan(simulation *s, uint32_t mask, int threads) {
     p->dx = s->sheet ? s->sheet_points.spacing : s->particles.dx;
     p->precision = s->engine->precision;
     p->simd = s->engine->simd;
-    static const char *const of_solids[] = {"position", "velocity", "affine_velocity", "deformation_gradient", "volume"};
+    static const char *const of_solids[] = {"position", "velocity", "affine_velocity", "deformation_gradient", "volume", "density_scale"};
     static const char *const of_sheets[] = {"position", "velocity", "area"};
-    for (size_t i = 0; i < (s->sheet ? 3u : 5u); i++) add_plan_field(s, s->sheet ? of_sheets[i] : of_solids[i], s->sheet ? "particles" : "transfer");
+    for (size_t i = 0; i < (s->sheet ? 3u : 6u); i++) add_plan_field(s, s->sheet ? of_sheets[i] : of_solids[i], s->sheet ? "particles" : "transfer");
     for (int e = 0; e < p->effect_count; e++)
         for (int i = 0; (p->mask >> e & 1) && i < p->effects[e]->field_count; i++) add_plan_field(s, p->effects[e]->fields[i].key, p->effects[e]->name);
     p->bytes_per_particle = engine_bytes(s);
@@ -94,6 +96,7 @@ static void drop_loading_arrays(body_particles *p) {
     memory_free(p->material, owners);
     memory_free(p->fibre1, 3 * sizeof(double) * owners);
     memory_free(p->fibre2, 3 * sizeof(double) * owners);
+    bodies_free_given(p);
     p->velocity = p->start = p->volume = p->fibre1 = p->fibre2 = NULL;
     p->material = NULL;
 }

@@ -32,7 +32,21 @@ static int find_index(const solid *s, const char *name) {
     return -1;
 }
 
-/* Only the fields of effects that are on; a second fibre family only where there is one. */
+static bool is_given(const solid *s, const char *field) {
+    for (int i = 0; i < s->definition.given_count; i++)
+        if (strcmp(s->definition.given[i].field, field) == 0) return true;
+    return false;
+}
+
+static bool scales_parameter(const char *field) {
+    for (int e = 0; e < SOLID_EFFECTS; e++)
+        for (int k = 0; k < effects[e]->parameter_count; k++)
+            if (effects[e]->parameters[k].scale && strcmp(effects[e]->parameters[k].scale, field) == 0) return true;
+    return false;
+}
+
+/* Only the fields of effects that are on; a second fibre family only where there is one, and what scales parameters only where the
+ * definition brings it. */
 static void plan_fields(solid *s) {
     add_field(s, "position", 3);
     add_field(s, "velocity", 3);
@@ -44,8 +58,15 @@ static void plan_fields(solid *s) {
             const effect_field *f = &effects[e]->fields[i];
             if (strcmp(f->key, "fibre") == 0 && !s->definition.fibre1) continue;
             if (strcmp(f->key, "fibre2") == 0 && !s->definition.fibre2) continue;
+            if (scales_parameter(f->key) && !is_given(s, f->key)) continue;
             add_field(s, f->key, f->components);
         }
+    if (is_given(s, "density_scale")) add_field(s, "density_scale", 1);
+    s->density_scale = find_index(s, "density_scale");
+    s->stiffness_scale = find_index(s, "stiffness_scale");
+    s->toughness_scale = find_index(s, "toughness_scale");
+    s->viscosity_scale = find_index(s, "viscosity_scale");
+    s->gamma_scale = find_index(s, "gamma_scale");
     s->damage_field = find_index(s, "damage");
     s->history_field = find_index(s, "damage_history");
     s->fibre_field = find_index(s, "fibre");

@@ -150,8 +150,9 @@ SIMD_INLINE void system_block(pass_context *c, int32_t index, int worker, kernel
         real rate = m->eta / c->dt, spread = m->length2 * gradient2;
         FOR_EACH_KERNEL(s, tile, kind, k,
                         real history = field_at(&s->fields[s->history_field], pack, 0, 0)[within];
-                        real mobility = 1 / (rate + 1 + history);
-                        real own = mobility * (rate * field_at(&s->fields[s->damage_field], pack, 0, 0)[within] + history);
+                        real here = rate * (real)scale_of(s, s->viscosity_scale, pack, within);
+                        real mobility = 1 / (here + 1 + history);
+                        real own = mobility * (here * field_at(&s->fields[s->damage_field], pack, 0, 0)[within] + history);
                         scatter_system(&kernel, nodes, field_at(&s->fields[FIELD_VOLUME], pack, 0, 0)[within], mobility, own, spread, window))
     }
     for (int which = 0; which < SCATTERED; which++) exchange_plane(s, b, window + which * WINDOW_NODES, which, true);

@@ -15,7 +15,8 @@ static void add_particle(const solid *s, const solid_tile *tile, int p, double i
     int32_t pack = tile->first_pack + p / PACK;
     int lane = p % PACK;
     const int32_t *block = s->blocks[tile->block].coordinate;
-    double mass = (double)field_at(&s->fields[FIELD_VOLUME], pack, 0, 0)[lane] * s->definition.materials[tile->material].density;
+    double mass = (double)field_at(&s->fields[FIELD_VOLUME], pack, 0, 0)[lane] * s->definition.materials[tile->material].density *
+                  scale_of(s, s->density_scale, pack, lane);
     double x[3], v[3], C[9], F[9], speed2 = 0, affine2 = 0;
     for (int c = 0; c < 3; c++) {
         x[c] = s->definition.dx * ((double)field_at(&s->fields[FIELD_POSITION], pack, c, 0)[lane] + (double)block[c] * BLOCK);

@@ -104,6 +104,9 @@ static void load_particle(solid *s, int32_t pack, int lane, int64_t i, bool aliv
         if (s->fibre_field >= 0) field_at(&s->fields[s->fibre_field], pack, c, 0)[lane] = (real)d->fibre1[3 * i + c];
         if (s->fibre2_field >= 0) field_at(&s->fields[s->fibre2_field], pack, c, 0)[lane] = (real)d->fibre2[3 * i + c];
     }
+    for (int g = 0; g < d->given_count; g++)
+        for (int f = FIELD_BUILT_IN; f < s->field_count; f++)
+            if (strcmp(s->fields[f].name, d->given[g].field) == 0) field_at(&s->fields[f], pack, 0, 0)[lane] = (real)d->given[g].value[i];
     if (s->damage_field >= 0 && d->damage) load_damage(s, pack, lane, alive ? d->damage[i] : 0);
     field_at(&s->fields[FIELD_VOLUME], pack, 0, 0)[lane] = alive ? (real)d->volume[i] : 0;
 }

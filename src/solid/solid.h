@@ -12,7 +12,7 @@
 
 #include <stdint.h>
 
-enum { SOLID_MATERIALS = 32, SOLID_BOUNDARIES = 64, SOLID_BINS = 50, SOLID_PHASES = 4 };
+enum { SOLID_MATERIALS = 32, SOLID_BOUNDARIES = 64, SOLID_BINS = 50, SOLID_PHASES = 4, SOLID_GIVEN = 8 };
 
 typedef struct solid_material {
     double density;
@@ -21,6 +21,12 @@ typedef struct solid_material {
 } solid_material;
 
 typedef rigid_boundary solid_boundary;
+
+/* Values of an optional field, at the start and for good. */
+typedef struct solid_given {
+    const char *field;
+    const double *value; /* [count] */
+} solid_given;
 
 typedef struct solid_definition {
     int threads;
@@ -39,6 +45,8 @@ typedef struct solid_definition {
     const double *volume;              /* [count], rest volume */
     const double *fibre1, *fibre2;     /* [count][3], unit and orthogonal; NULL when no effect needs them */
     const double *damage;              /* [count], at the start, 0 to 1; NULL: whole */
+    int given_count;
+    solid_given given[SOLID_GIVEN];    /* fields by which a material's parameters are scaled; "density_scale" its density */
     const uint8_t *material;           /* [count] */
     /* A body of tetrahedra: particles are its vertices, `position` their places at rest. Fibres and
      * `material` are the elements'; `volume` is not read. */

@@ -29,7 +29,7 @@ enum {
     WINDOW_NODES = WINDOW * WINDOW * WINDOW,
     NEIGHBOURS = 27,
     CONSTANTS = 16,      /* reals an effect may derive from a material's values */
-    EFFECT_FIELDS = 8,
+    EFFECT_FIELDS = 16,
     IMPLICIT_WINDOWS = 4, /* planes of nodes that a solve on the grid scatters together */
 };
 
@@ -158,6 +158,7 @@ struct solid {
     int32_t *id; // [pack_capacity][PACK], −1 for padding
     int field_count;
     solid_field fields[FIELD_LIMIT];
+    int density_scale, stiffness_scale, toughness_scale, viscosity_scale, gamma_scale; /* the same: parameters that vary in place */
     int damage_field, history_field, fibre_field, fibre2_field, tension_field; /* indices, −1 when absent */
 
     int32_t tile_count, tile_capacity, result_capacity, block_count, block_capacity, colour_capacity;
@@ -244,6 +245,19 @@ SIMD_INLINE real *scratch_at(real *base, int components, int k, int component, i
     return base + (k * components + component) * PACK + part * VEC_LANES;
 }
 
+/* A quantity times the scale of a parameter that varies in place; as it is where none does (−1; or 0, which is the position's). */
+SIMD_INLINE vec scaled(const solid *s, int field, int32_t pack, int part, vec value) {
+    return field <= 0 ? value : value * vec_load(field_at(&s->fields[field], pack, 0, part));
+}
+
+SIMD_INLINE vec scaled_down(const solid *s, int field, int32_t pack, int part, vec value) {
+    return field <= 0 ? value : value / vec_load(field_at(&s->fields[field], pack, 0, part));
+}
+
+SIMD_INLINE double scale_of(const solid *s, int field, int32_t pack, int lane) {
+    return field <= 0 ? 1 : (double)field_at(&s->fields[field], pack, 0, 0)[lane];
+}
+
 /* particles.c */
 status particles_reserve(solid *s, int32_t packs, report *r);
 status particles_load(solid *s, report *r);
@@ -268,8 +282,8 @@ status implicit_solve(solid *s, real dt, report *r);
 void implicit_load_window(const solid *s, const solid_block *b, real *window);
 void implicit_gather(const tile_work *w, const real *window);
 /* A particle's own step from dⁿ: driven by H, with the diffusion of the nodes' solution and rate = η/Δt. */
-SIMD_INLINE vec implicit_damage(vec d, vec H, vec spread, real rate) {
-    vec solved = vec_fma(vec_all(rate), d, H + spread) / (H + (rate + 1));
+SIMD_INLINE vec implicit_damage(vec d, vec H, vec spread, vec rate) {
+    vec solved = vec_fma(rate, d, H + spread) / (H + (rate + 1));
     return vec_min(vec_max(solved, d), vec_all(1));
 }
 /* measure.c */

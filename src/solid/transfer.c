@@ -30,7 +30,7 @@ SIMD_INLINE void momentum_records(const tile_work *w, kernel_kind kernel, real d
             int32_t pack = w->tile->first_pack + k;
             int first = k * PACK + part * VEC_LANES;
             vec volume = vec_load(field_at(&s->fields[FIELD_VOLUME], pack, 0, part));
-            vec mass = volume * density, force = volume * force_scale, carry = mass * dx;
+            vec mass = scaled(s, s->density_scale, pack, part, volume * density), force = volume * force_scale, carry = mass * dx;
             mat3v C = mat3v_load(&s->fields[FIELD_AFFINE], pack, part);
             real *tau = w->scratch->kirchhoff;
             vec t[6];
@@ -327,7 +327,8 @@ static void limit_momentum(tile_work *w) {
             int32_t pack = w->tile->first_pack + k;
             vec3v v = vec3v_load(&s->fields[FIELD_VELOCITY], pack, part);
             vec modulus = vec_load(scratch_at(w->scratch->wave_modulus, 1, k, 0, part));
-            vec speed = vec_sqrt(modulus * inverse_density) + vec_sqrt(vec3v_dot(v, v));
+            vec square = scaled_down(s, s->density_scale, pack, part, modulus * inverse_density);
+            vec speed = vec_sqrt(square) + vec_sqrt(vec3v_dot(v, v));
             vec volume = vec_load(field_at(&s->fields[FIELD_VOLUME], pack, 0, part));
             fastest = vec_max(vec_select(volume > 0, speed, vec_all(0)), fastest);
         }

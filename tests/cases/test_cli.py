@@ -207,6 +207,105 @@ def test_output_is_never_overwritten():
         check(code in (1, 2) and "/dev/null" in err, f"a ledger that cannot be: {code} {err}")
 
 
+def test_functions_of_place_and_notches_resume():
+    with Box() as box:
+        with open(box.path("vary.lua"), "w") as file:
+            file.write("""local s = require "sunder"
+return s.scene { particles = 1000, duration = 1, solids = { { name = "bar", shape = s.box { size = { 2, 0.5, 0.5 } },
+  notches = { s.box { center = { 0, 0.25, 0 }, size = { 0.2, 0.3, 1 } } },
+  material = { density = function(x) return x > 0 and 2 or 1 end, elastic = { E = function(x) return x > 0 and 100 or 20 end },
+    damage = { break_stretch = 0.05, eta = 0.1 } } } },
+  grips = { { shape = s.box { center = { 1, 0, 0 }, size = { 0.3, 1, 1 } }, velocity = { 1, 0, 0 } },
+            { shape = s.box { center = { -1, 0, 0 }, size = { 0.3, 1, 1 } } } } }
+""")
+        whole = box.run(box.path("vary.lua"), "--frames", "6")[1]
+        part = box.run(box.path("vary.lua"), "--frames", "3")[1]
+        code, again, err = box.run("--resume", part["run_id"], "--frames", "3")
+        check(code == 0 and again["state_hash"] == whole["state_hash"], f"the same bits: {err}")
+        plain = box.run(box.path("vary.lua"), "--frames", "6", "--set", "E=100")[1]
+        check(plain["state_hash"] != whole["state_hash"], "--set E takes the function's place")
+        fields = {f["name"] for f in json.loads(box.call("explain", box.path("vary.lua"), "--json")[1])["fields"]}
+        check({"stiffness_scale", "toughness_scale", "density_scale"} <= fields and "viscosity_scale" not in fields, f"only what varies: {fields}")
+
+
+def write_sweep(box, over, more=""):
+    with open(box.path("grid.lua"), "w") as file:
+        file.write(f"""local s = require "sunder"
+return s.sweep {{ scene = "{PULL}", frames = 2, set = {{ particles = 1500, pull = 0.6 }},
+  over = {{ {over} }}{more} }}
+""")
+    return box.path("grid.lua")
+
+
+def sweep(box, path, *arguments):
+    code, out, err = box.call("sweep", path, *arguments, "--json")
+    return code, json.loads(out) if out else None, err
+
+
+def test_sweep():
+    with Box() as box:
+        path = write_sweep(box, 'eta = { 0.1, 0.2 }, variant = { "full", "isotropic" }')
+        code, first, err = sweep(box, path, "-j", "2")
+        check(code == 0 and first["done"] == 4 and len(first["runs"]) == 4, f"four runs: {code} {err}")
+        check([tuple(r["settings"].values()) for r in first["runs"]] == [("0.1", "full"), ("0.1", "isotropic"), ("0.2", "full"), ("0.2", "isotropic")],
+              "all combinations, the last name fastest")
+        listed = json.loads(box.call("runs", "list", "--where", "tags = 'grid' AND status = 'done'", "--json")[1])
+        check(len(listed["runs"]) == 4, f"found by their tag: {len(listed['runs'])}")
+        shown = box.call("runs", "show", first["runs"][3]["run_id"], "--json")[1]
+        check('"isotropic"' in shown and "0.2" in shown, "with their settings")
+        path = write_sweep(box, 'eta = { 0.1, 0.2, 0.3 }, variant = { "full", "isotropic" }')
+        code, second, err = sweep(box, path)
+        check(code == 0 and second["done"] == 2 and second["done_before"] == 4, f"only what is new: {code} {second and second['done']} {err}")
+        check({r["run_id"] for r in first["runs"]} < {r["run_id"] for r in second["runs"]}, "the others are the runs of before")
+        check(len(box.statuses()) == 6, f"six rows: {box.statuses()}")
+    with Box() as box:
+        path = write_sweep(box, "eta = { 0.1, -1, 0.2 }")
+        code, result, err = sweep(box, path)
+        states = [r["status"] for r in result["runs"]]
+        check(code == 1 and states == ["done", "failed", "done"], f"one that is wrong does not stop the others: {code} {states}")
+        check("eta" in result["runs"][1]["message"] and result["runs"][1]["exit_code"] == 2, f"and says why: {result['runs'][1]}")
+        path = write_sweep(box, "eta = { 1e-9, 0.3 }")
+        code, result, err = sweep(box, path)
+        check(code == 1 and [r["status"] for r in result["runs"]] == ["failed", "done"], f"nor one that fails as it runs: {code} {result}")
+        check("implicit" in result["runs"][0]["message"] and result["runs"][0]["run_id"], f"which says why, too: {result['runs'][0]}")
+
+
+def test_sweep_that_is_wrong():
+    with Box() as box:
+        for over, more, words in (("etaa = { 1, 2 }", "", ("etaa", "did you mean 'eta'")), ("eta = { 1 }", ", tilte = 'x'", ("grid.lua:3", "did you mean 'title'")),
+                                  ("eta = { }", "", ("over.eta", "at least one value")), ("eta = 1", "", ("over.eta", "a list of values")),
+                                  ("eta = { {} }", "", ("over.eta[1]", "a number"))):
+            code, out, err = box.call("sweep", write_sweep(box, over, more))
+            check(code == 2 and all(word in err for word in words), f"{over} {more}: {code} {err}")
+        code, out, err = box.call("sweep", PULL)
+        check(code == 2 and "s.sweep" in err, f"a scene is no sweep: {code} {err}")
+        code, out, err = box.call("run", write_sweep(box, "eta = { 1 }"))
+        check(code == 2 and "s.scene" in err, f"a sweep is no scene: {code} {err}")
+        check(box.statuses() == [], "and nothing ran")
+
+
+def test_sweep_stops_and_goes_on():
+    with Box() as box:
+        with open(box.path("grid.lua"), "w") as file:
+            file.write(f'return require("sunder").sweep {{ scene = "{PULL}", frames = 60, set = {{ particles = 1500 }}, over = {{ eta = {{ 0.1, 0.2, 0.3 }} }} }}\n')
+        process = box.start("sweep", box.path("grid.lua"), "--json")
+        deadline = time.monotonic() + 60
+        while process.poll() is None and time.monotonic() < deadline:
+            time.sleep(0.05)
+            try:
+                if "done" in box.statuses():
+                    break
+            except sqlite3.OperationalError:  # the ledger is being made
+                pass
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=60)
+        check(process.returncode == 130, f"stopped: {process.returncode}")
+        finished = box.statuses().count("done")
+        check(1 <= finished < 3 and "running" not in box.statuses(), f"its run ends with it: {box.statuses()}")
+        code, result, err = sweep(box, box.path("grid.lua"))
+        check(code == 0 and result["done_before"] == finished and result["done"] == 3 - finished, f"and the rest is done: {code} {result and result['done']} {err}")
+
+
 def test_render():
     with Box() as box:
         run = box.run(PULL, *SMALL, "--frames", "1")[1]["run_id"]

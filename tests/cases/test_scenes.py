@@ -152,6 +152,9 @@ def test_every_scene_is_right():
         for path in sorted(glob.glob(os.path.join(SOURCE, "scenes/solid/*.lua"))):
             code, out, err = box.call("check", path)
             check(code == 0, f"{os.path.basename(path)}: {out} {err}")
+        for path in sorted(glob.glob(os.path.join(SOURCE, "scenes/solid/sweeps/*.lua"))):
+            code, out, err = box.call("sweep", path, "--frames", "0", "--set", "particles=500", "--quiet")
+            check(code == 0, f"{os.path.basename(path)}: {out} {err}")
 
 
 def test_tube_pull():

@@ -502,6 +502,42 @@ static void test_resolved(void) {
     CHECK(!s && complains("processor time"));
 }
 
+/* Parameters that are functions of place: the material has their largest, what pins a run leaves them to the scene, and --set
+ * takes their place. */
+static void test_variations(void) {
+    static const char text[] = HEAD
+        "return s.scene { particles = 1, duration = 4, solids = { { shape = s.box { size = { 2, 2, 2 } },\n"
+        "  material = { name = 'wood', density = function(x, y, z) return 2 + 0 * x end,\n"
+        "    elastic = { E = function(x, y, z) return 10 + x end },\n"
+        "    damage = { break_stretch = 0.1, eta = function(x, y, z) return 0.5 end } } } } }";
+    script *s = loaded(text, NULL);
+    if (!s) return;
+    const scene_material *m = &script_scene(s)->materials[0];
+    CHECK(m->variation_count == 3 && m->density == 2 && knob_value(s, 0, "damage", "eta") == 0.5);
+    CHECK(knob_value(s, 0, "elastic", "E") > 10 && knob_value(s, 0, "elastic", "E") < 11);
+    CHECK(strstr(script_resolved(s), "break_stretch") && !strstr(script_resolved(s), "elastic.E") && !strstr(script_resolved(s), "density") &&
+          !strstr(script_resolved(s), "damage.eta"));
+    script_close(s);
+    s = loaded(text, SET("E=7", "density=3"));
+    if (!s) return;
+    CHECK(script_scene(s)->materials[0].variation_count == 1 && script_scene(s)->materials[0].density == 3);
+    CHECK(knob_value(s, 0, "elastic", "E") == 7 && strstr(script_resolved(s), "elastic.E"));
+    script_close(s);
+}
+
+/* A list of notches is their union. */
+static void test_notches(void) {
+    script *s = loaded(HEAD
+        "return s.scene { particles = 1, duration = 4, solids = { { shape = s.box { size = { 2, 2, 2 } },\n"
+        "  material = { density = 1, elastic = { E = 1 }, damage = { sigma_c = 1 } },\n"
+        "  notches = { s.sphere { radius = 0.25, center = { 1, 0, 0 } }, s.sphere { radius = 0.25, center = { -1, 0, 0 } } } } } }", NULL);
+    if (!s) return;
+    const shape *notches = script_scene(s)->bodies[0].notches;
+    const double right[3] = {1, 0, 0}, left[3] = {-1, 0, 0}, middle[3] = {0, 0, 0};
+    CHECK(notches && shape_distance(notches, right) < 0 && shape_distance(notches, left) < 0 && shape_distance(notches, middle) > 0);
+    script_close(s);
+}
+
 /* ---- memory ------------------------------------------------------------------------------------------------------ */
 
 /* Every allocation fails once, from the first on, until a load gets through; nothing leaks, nothing crashes, and each
@@ -558,6 +594,8 @@ int main(void) {
     RUN(test_log);
     RUN(test_random);
     RUN(test_resolved);
+    RUN(test_variations);
+    RUN(test_notches);
     CHECK(memory_live_bytes() == before);
     RUN(test_allocation_failures);
     files_close();

@@ -11,7 +11,7 @@
 #include "base/eigen.h"
 #include "base/random.h"
 
-enum { DAMAGE_FIELD = 5, HISTORY_FIELD = 6, KEY_SIGMA_C = 0, KEY_BREAK_STRETCH, KEY_ETA, KEY_ALPHA, KEY_ALPHA2 };
+enum { DAMAGE_FIELD = 5, HISTORY_FIELD = 6, KEY_SIGMA_C = 0, KEY_BREAK_STRETCH, KEY_ETA, KEY_ALPHA, KEY_ALPHA2, KEY_AS_SHIPPED = 10 };
 
 static material_point *damage_point(double sigma_c, double eta, double alpha) {
     material_point *p = point_create(1u << EFFECT_elastic | 1u << EFFECT_damage);
@@ -229,11 +229,31 @@ static void damage_only_grows_and_only_in_tension(void) {
     }
 }
 
+/* as_shipped: once the load is gone nothing drives; otherwise the largest force goes on doing so. */
+static void as_shipped_forgets(void) {
+    static const double stretched[9] = {1.1, 0, 0, 0, 1.1, 0, 0, 0, 1.1}, whole[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    double after[2];
+    for (int shipped = 0; shipped < 2; shipped++) {
+        material_point *p = damage_point(0.2, 1, 0);
+        p->values[EFFECT_damage].value[KEY_AS_SHIPPED][0] = shipped;
+        point_set(p, FIELD_DEFORMATION, stretched);
+        update(p, 1e-5);
+        double before = damage_of(p);
+        CHECK(before > 0 && before < 0.5);
+        point_set(p, FIELD_DEFORMATION, whole);
+        update(p, 1e-5);
+        after[shipped] = damage_of(p) - before;
+        free(p);
+    }
+    CHECK(after[0] > 0 && after[1] == 0);
+}
+
 int main(void) {
     RUN(uniform_damage_follows_its_exponential);
     RUN(driving_force_is_its_definition);
     RUN(positive_part_with_repeated_values);
     RUN(percentages_give_table_1);
     RUN(damage_only_grows_and_only_in_tension);
+    RUN(as_shipped_forgets);
     return check_finish();
 }

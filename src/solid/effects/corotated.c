@@ -66,6 +66,10 @@ SIMD_INLINE mat3v rotation(mat3v F) {
 #undef ROW
 }
 
+SIMD_INLINE vec stiffened(const tile_work *w, int k, int part, vec value) {
+    return scaled(w->state, w->state->stiffness_scale, w->tile->first_pack + k, part, value);
+}
+
 static void stress(tile_work *w) {
     const solid_field *F_field = &w->state->fields[FIELD_DEFORMATION];
     real mu = w->constants[MU], lambda = w->constants[LAMBDA];
@@ -73,7 +77,8 @@ static void stress(tile_work *w) {
         for (int part = 0; part < PACK_PARTS; part++) {
             mat3v F = mat3v_load(F_field, w->tile->first_pack + k, part);
             vec g = vec_load(scratch_at(w->scratch->degradation, 1, k, 0, part));
-            vec J = mat3v_determinant(F), shear = 2 * mu * g, pressure = degraded_lambda(J, g, lambda) * (J - 1) * J;
+            vec J = mat3v_determinant(F), shear = stiffened(w, k, part, 2 * mu * g);
+            vec pressure = stiffened(w, k, part, degraded_lambda(J, g, lambda)) * (J - 1) * J;
             stretch3v stretch = mat3v_stretch(F, mat3v_gram(F));
             vec3v s = signed_stretches(stretch.square, J), n1 = stretch.first, n2 = stretch.second, n3 = stretch.third;
             vec t1 = vec_fma(shear * s.x, s.x - 1, pressure), t2 = vec_fma(shear * s.y, s.y - 1, pressure),
@@ -127,7 +132,7 @@ static void wave(tile_work *w) {
             vec J = mat3v_determinant(F);
             vec shear = 2 * mu * g * sym3v_largest_bound(mat3v_gram(F)), bulk = degraded_lambda(J, g, lambda) * J * J;
             real *modulus = scratch_at(w->scratch->wave_modulus, 1, k, 0, part);
-            vec_store(modulus, vec_load(modulus) + shear + bulk);
+            vec_store(modulus, vec_load(modulus) + stiffened(w, k, part, shear + bulk));
         }
 }
 
@@ -159,15 +164,20 @@ static void energy(tile_work *w) {
         double J = F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
         double g = (double)w->scratch->degradation[k * PACK + lane], g_volume = J >= 1 ? g : 1;
         double density = g * mu * corotated_square(F, J) + g_volume * 0.5 * lambda * (J - 1) * (J - 1);
+        density *= scale_of(w->state, w->state->stiffness_scale, w->tile->first_pack + k, lane);
         w->energy[0] += density * (double)field_at(&w->state->fields[FIELD_VOLUME], w->tile->first_pack + k, 0, 0)[lane];
     }
 }
 
 static const parameter parameters[] = {
-    [ELASTIC_KEY_E] = {.key = "E", .unit = "mass/(length time^2)", .doc = "Young's modulus of the matrix", .minimum = 1e-12,
+    [ELASTIC_KEY_E] = {.key = "E", .unit = "mass/(length time^2)", .doc = "Young's modulus of the matrix", .minimum = 1e-12, .scale = "stiffness_scale",
                        .maximum = 1e18, .fallback = {1e4}, .live = true, .logarithmic = true, .required = true},
     [ELASTIC_KEY_NU] = {.key = "nu", .unit = "1", .doc = "Poisson's ratio", .minimum = -0.999, .maximum = 0.4999, .fallback = {0.3},
                         .live = true},
+};
+
+static const effect_field fields[] = {
+    {.key = "stiffness_scale", .components = 1, .unit = "1", .written = true, .doc = "E over its material's, where it varies"},
 };
 
 static const effect_measure measures[] = {
@@ -179,5 +189,5 @@ static const solid_stages stages = {.constants = constants, .stress = stress, .w
 const effect SOLID_EFFECT(corotated) = {
     .name = "corotated", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "fixed-corotated elasticity of the matrix, instead of elastic",
     .reference = "Stomakhin et al. 2012; METHOD.md section 1", .parameters = parameters, .parameter_count = 2,
-    .measures = measures, .measure_count = 1, .provides = ELASTICITY, .stages = &stages,
+    .fields = fields, .field_count = 1, .measures = measures, .measure_count = 1, .provides = ELASTICITY, .stages = &stages,
 };

@@ -11,9 +11,9 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { ETA_INVERSE, CRITICAL_INVERSE2, ALPHA1, ALPHA2, RESIDUAL, ZETA, LENGTH2, MU, LAMBDA, COROTATED, FROZEN, LAPLACIAN_BOUND, IMPLICIT };
+enum { ETA_INVERSE, CRITICAL_INVERSE2, ALPHA1, ALPHA2, RESIDUAL, ZETA, LENGTH2, MU, LAMBDA, COROTATED, FROZEN, LAPLACIAN_BOUND, IMPLICIT, INSTANT };
 enum { KEY_SIGMA_C, KEY_BREAK_STRETCH, KEY_ETA, KEY_ALPHA, KEY_ALPHA2, KEY_RESIDUAL, KEY_ZETA, KEY_LENGTH_SCALE, KEY_FORM,
-       KEY_TOLERANCE, KEY_COUNT };
+       KEY_TOLERANCE, KEY_AS_SHIPPED, KEY_COUNT };
 
 #define DRIVING_LIMIT ((real)1e6)
 #define OVERSHOOT ((real)1e-3) /* in d, that a step may leave behind */
@@ -38,6 +38,7 @@ static void constants(const effect_values *all, const solid_definition *d, bool 
     out[FROZEN] = protects ? 1 : 0;
     /* Σ|N''| = 4 a direction for both splines: no discrete Laplacian of values in [0,1] exceeds 12/dx². */
     out[IMPLICIT] = (real)own->value[KEY_FORM][0];
+    out[INSTANT] = own->value[KEY_FORM][0] == 0 ? (real)own->value[KEY_AS_SHIPPED][0] : 0;
     out[LAPLACIAN_BOUND] = (real)(12 * length * length / (d->dx * d->dx));
 }
 
@@ -153,6 +154,15 @@ SIMD_INLINE vec driving_stress(const tile_work *w, int32_t pack, int part, mat3v
     return driving_form(A, &e, positive);
 }
 
+/* Stress over σc, squared, by what this particle's E and σc are to its material's. */
+SIMD_INLINE vec relative_load(const tile_work *w, int32_t pack, int part, vec value) {
+    const solid *s = w->state;
+    if (s->toughness_scale <= 0 && s->stiffness_scale <= 0) return value;
+    vec toughness = scaled(s, s->toughness_scale, pack, part, vec_all(1));
+    vec ratio = scaled(s, s->stiffness_scale, pack, part, vec_all(1)) / toughness;
+    return value * ratio * ratio;
+}
+
 /* The history's new value from this step's F. */
 SIMD_INLINE vec history(const tile_work *w, int32_t pack, int part, vec d, vec H) {
     const real *c = w->constants;
@@ -163,10 +173,10 @@ SIMD_INLINE vec history(const tile_work *w, int32_t pack, int part, vec d, vec H
     vec pressure = J * vec_fma(vec_all(c[LAMBDA]), J - 1, vec_all(corotated ? 0 : -c[MU]));
     vec inverse_J = 1 / vec_max(J, vec_all((real)1e-3));
     vec square = corotated ? square_bound_corotated(c, b, pressure) : square_closed_form(c, b, pressure);
-    vec bound = square * inverse_J * inverse_J * c[CRITICAL_INVERSE2];
+    vec bound = relative_load(w, pack, part, square * inverse_J * inverse_J * c[CRITICAL_INVERSE2]);
     vec_mask open = (bound > BOUND_MARGIN * (1 + H * (1 / c[ZETA]))) & (J > 0) & (d < 1);
     if (!vec_any(open)) return H;
-    vec phi = driving_stress(w, pack, part, F, b, J, pressure) * c[CRITICAL_INVERSE2];
+    vec phi = relative_load(w, pack, part, driving_stress(w, pack, part, F, b, J, pressure) * c[CRITICAL_INVERSE2]);
     vec raised = vec_min(vec_max(c[ZETA] * (phi - 1), H), vec_all(DRIVING_LIMIT));
     return vec_select(open, raised, H);
 }
@@ -192,7 +202,8 @@ static void update_implicit(tile_work *w) {
         for (int part = 0; part < PACK_PARTS; part++) {
             int32_t pack = w->tile->first_pack + k;
             vec d = vec_load(field_at(damage, pack, 0, part)), H = vec_load(field_at(histories, pack, 0, part));
-            d = implicit_damage(d, H, vec_load(scratch_at(w->scratch->laplacian, 1, k, 0, part)), rate);
+            vec spread = vec_load(scratch_at(w->scratch->laplacian, 1, k, 0, part));
+            d = implicit_damage(d, H, spread, scaled(w->state, w->state->viscosity_scale, pack, part, vec_all(rate)));
             vec_store(field_at(damage, pack, 0, part), d);
             vec_store(field_at(histories, pack, 0, part), history(w, pack, part, d, H));
         }
@@ -213,14 +224,15 @@ static void update(tile_work *w) {
         for (int part = 0; part < PACK_PARTS; part++) {
             int32_t pack = w->tile->first_pack + k;
             vec d = vec_load(field_at(damage, pack, 0, part)), H = vec_load(field_at(histories, pack, 0, part));
-            H = history(w, pack, part, d, H);
+            H = history(w, pack, part, d, c[INSTANT] != 0 ? vec_all(0) : H);
             vec spread = c[LENGTH2] * vec_load(scratch_at(w->scratch->laplacian, 1, k, 0, part));
             vec growth = vec_max(vec_fma(1 - d, H, spread - d), vec_all(0));
-            d = vec_min(vec_fma(vec_all(rate), growth, d), vec_all(1));
+            vec pace = scaled_down(w->state, w->state->viscosity_scale, pack, part, vec_all(1));
+            d = vec_min(vec_fma(rate * pace, growth, d), vec_all(1));
             vec_store(field_at(damage, pack, 0, part), d);
             vec_store(field_at(histories, pack, 0, part), H);
             vec alive = vec_load(field_at(&w->state->fields[FIELD_VOLUME], pack, 0, part));
-            limit = vec_max(vec_select(alive > 0, relaxation_limit(c, d, H, spread), vec_all(0)), limit);
+            limit = vec_max(vec_select(alive > 0, relaxation_limit(c, d, H, spread) * pace, vec_all(0)), limit);
         }
     w->result->limit[w->effect] = vec_largest(limit);
 }
@@ -273,12 +285,12 @@ static const char *const form_choices[] = {"explicit", "implicit", NULL};
 static const parameter parameters[KEY_COUNT] = {
     [KEY_SIGMA_C] = {.key = "sigma_c", .unit = "mass/(length time^2)", .doc = "critical stress: damage starts above it",
                      .minimum = 1e-12, .maximum = 1e18, .fallback = {1}, .live = true, .logarithmic = true,
-                     .required = true, .twin = "break_stretch"},
+                     .required = true, .twin = "break_stretch", .scale = "toughness_scale"},
     [KEY_BREAK_STRETCH] = {.key = "break_stretch", .unit = "1",
                            .doc = "stretch whose energy density sets sigma_c (0.2: about 20 %)", .minimum = 1e-6,
-                           .maximum = 100, .fallback = {0.2}, .live = true, .logarithmic = true, .twin = "sigma_c"},
+                           .maximum = 100, .fallback = {0.2}, .live = true, .logarithmic = true, .twin = "sigma_c", .scale = "toughness_scale"},
     [KEY_ETA] = {.key = "eta", .unit = "time", .doc = "viscosity of damage: larger is more ductile, smaller more brittle",
-                 .maximum = 1e6, .fallback = {0.1}, .live = true, .logarithmic = true},
+                 .maximum = 1e6, .fallback = {0.1}, .live = true, .logarithmic = true, .scale = "viscosity_scale"},
     [KEY_ALPHA] = {.key = "alpha", .unit = "1",
                    .doc = "-1: stress along the first fibres does no damage, cracks run along them; 0: isotropic",
                    .minimum = -1, .maximum = 0, .live = true},
@@ -293,6 +305,9 @@ static const parameter parameters[KEY_COUNT] = {
                   .kind = PARAMETER_CHOICE, .maximum = 1, .choices = form_choices},
     [KEY_TOLERANCE] = {.key = "tolerance", .unit = "1", .doc = "relative residual of the implicit solve", .minimum = 1e-14,
                        .maximum = 0.1, .fallback = {1e-4}, .live = true, .logarithmic = true},
+    [KEY_AS_SHIPPED] = {.key = "as_shipped", .unit = "1",
+                        .doc = "explicit form: driven by the force of the moment instead of the largest so far, as the authors' code is",
+                        .kind = PARAMETER_BOOLEAN, .maximum = 1, .live = true},
 };
 
 static const effect_field fields[] = {
@@ -300,6 +315,8 @@ static const effect_field fields[] = {
     {.key = "damage_history", .components = 1, .unit = "1", .written = false, .doc = "largest driving force so far"},
     {.key = "fibre", .components = 3, .unit = "1", .written = true, .doc = "first fibre direction at rest, unit"},
     {.key = "fibre2", .components = 3, .unit = "1", .written = true, .doc = "second fibre direction at rest, unit"},
+    {.key = "toughness_scale", .components = 1, .unit = "1", .written = true, .doc = "sigma_c over its material's, where it varies"},
+    {.key = "viscosity_scale", .components = 1, .unit = "1", .written = true, .doc = "eta over its material's, where it varies"},
 };
 
 static const effect_measure measures[] = {
@@ -313,6 +330,6 @@ static const solid_stages stages = {.constants = constants, .declare = declare, 
 const effect SOLID_EFFECT(damage) = {
     .name = "damage", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "anisotropic damage of the matrix",
     .reference = "AnisoMPM sections 3, 4.3; METHOD.md section 2", .parameters = parameters, .parameter_count = KEY_COUNT,
-    .fields = fields, .field_count = 4, .measures = measures, .measure_count = 3, .provides = "damage model", .resolve = resolve, .needs = ELASTICITY,
+    .fields = fields, .field_count = 6, .measures = measures, .measure_count = 3, .provides = "damage model", .resolve = resolve, .needs = ELASTICITY,
     .stages = &stages,
 };

@@ -27,6 +27,10 @@ SIMD_INLINE vec cofactor_weight(const tile_work *w, vec J, vec g) {
     return vec_fma(volumetric_degradation(J, g) * w->constants[LAMBDA], J - 1, -(g * w->constants[MU]));
 }
 
+SIMD_INLINE vec stiffened(const tile_work *w, int k, int part, vec value) {
+    return scaled(w->state, w->state->stiffness_scale, w->tile->first_pack + k, part, value);
+}
+
 static void stress(tile_work *w) {
     const solid_field *F_field = &w->state->fields[FIELD_DEFORMATION];
     real mu = w->constants[MU];
@@ -36,7 +40,7 @@ static void stress(tile_work *w) {
             vec g = vec_load(scratch_at(w->scratch->degradation, 1, k, 0, part));
             vec J = mat3v_determinant(F);
             sym3v b = mat3v_gram(F);
-            vec g_mu = g * mu, pressure = J * cofactor_weight(w, J, g);
+            vec g_mu = stiffened(w, k, part, g * mu), pressure = J * stiffened(w, k, part, cofactor_weight(w, J, g));
             real *tau = w->scratch->kirchhoff;
             vec_store(scratch_at(tau, 6, k, 0, part), vec_fma(g_mu, b.xx, pressure));
             vec_store(scratch_at(tau, 6, k, 1, part), vec_fma(g_mu, b.yy, pressure));
@@ -84,7 +88,7 @@ static void wave(tile_work *w) {
             vec shear = g * mu * sym3v_largest_bound(mat3v_gram(F));
             vec bulk = volumetric_degradation(J, g) * lambda * J * J;
             real *modulus = scratch_at(w->scratch->wave_modulus, 1, k, 0, part);
-            vec_store(modulus, vec_load(modulus) + shear + bulk);
+            vec_store(modulus, vec_load(modulus) + stiffened(w, k, part, shear + bulk));
         }
 }
 
@@ -101,6 +105,7 @@ static void energy(tile_work *w) {
         for (int c = 0; c < 9; c++) square += F[c] * F[c];
         double g = (double)w->scratch->degradation[k * PACK + lane], g_volume = J >= 1 ? g : 1;
         double density = g * mu * (0.5 * (square - 3) - (J - 1)) + g_volume * 0.5 * lambda * (J - 1) * (J - 1);
+        density *= scale_of(w->state, w->state->stiffness_scale, w->tile->first_pack + k, lane);
         w->energy[0] += density * (double)field_at(&w->state->fields[FIELD_VOLUME], w->tile->first_pack + k, 0, 0)[lane];
     }
 }
@@ -108,12 +113,16 @@ static void energy(tile_work *w) {
 static const char *const lame_choices[] = {"consistent", "paper", NULL};
 
 static const parameter parameters[] = {
-    [ELASTIC_KEY_E] = {.key = "E", .unit = "mass/(length time^2)", .doc = "Young's modulus of the matrix", .minimum = 1e-12,
+    [ELASTIC_KEY_E] = {.key = "E", .unit = "mass/(length time^2)", .doc = "Young's modulus of the matrix", .minimum = 1e-12, .scale = "stiffness_scale",
                .maximum = 1e18, .fallback = {1e4}, .live = true, .logarithmic = true, .required = true},
     [ELASTIC_KEY_NU] = {.key = "nu", .unit = "1", .doc = "Poisson's ratio", .minimum = -0.999, .maximum = 0.4999, .fallback = {0.3},
                 .live = true},
     [ELASTIC_KEY_LAME] = {.key = "lame", .unit = "1", .doc = "consistent: (E, nu) is the linear response; paper: plain Lamé lambda",
                   .kind = PARAMETER_CHOICE, .maximum = 1, .choices = lame_choices, .live = true},
+};
+
+static const effect_field fields[] = {
+    {.key = "stiffness_scale", .components = 1, .unit = "1", .written = true, .doc = "E over its material's, where it varies"},
 };
 
 static const effect_measure measures[] = {
@@ -125,5 +134,5 @@ static const solid_stages stages = {.constants = constants, .stress = stress, .w
 const effect SOLID_EFFECT(elastic) = {
     .name = "elastic", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "isotropic elasticity of the matrix",
     .reference = "AnisoMPM section 5; METHOD.md section 1", .parameters = parameters, .parameter_count = 3,
-    .measures = measures, .measure_count = 1, .provides = ELASTICITY, .stages = &stages,
+    .fields = fields, .field_count = 1, .measures = measures, .measure_count = 1, .provides = ELASTICITY, .stages = &stages,
 };

@@ -17,6 +17,11 @@ static void constants(const effect_values *all, const solid_definition *d, bool 
     out[K2] = (real)(mu * all[EFFECT_fibres].value[KEY_GAMMA2][0]);
 }
 
+/* γ's own scale, and that of μ. */
+SIMD_INLINE vec stiffened(const tile_work *w, int32_t pack, int part, vec value) {
+    return scaled(w->state, w->state->gamma_scale, pack, part, scaled(w->state, w->state->stiffness_scale, pack, part, value));
+}
+
 /* Adds one family's Kirchhoff stress. As ℓ → 0 the direction F a is lost and with it the (finite) force: the limit
  * (1 − 1/ℓ)(F a)(F a)ᵀ → 0 is what stands. */
 static void add_family(tile_work *w, int field, real stiffness) {
@@ -27,7 +32,7 @@ static void add_family(tile_work *w, int field, real stiffness) {
             vec3v f = mat3v_times(mat3v_load(&w->state->fields[FIELD_DEFORMATION], pack, part),
                                   vec3v_load(&w->state->fields[field], pack, part));
             vec length = vec_max(vec_sqrt(vec3v_dot(f, f)), vec_all(LENGTH_TINY));
-            vec factor = stiffness * (1 - 1 / length);
+            vec factor = stiffened(w, pack, part, stiffness * (1 - 1 / length));
             vec3v g = {factor * f.x, factor * f.y, factor * f.z};
             vec products[6] = {g.x * f.x, g.y * f.y, g.z * f.z, g.x * f.y, g.y * f.z, g.x * f.z};
             for (int c = 0; c < 6; c++) {
@@ -86,7 +91,7 @@ static void add_wave(tile_work *w, int field, real stiffness) {
             vec3v f = mat3v_times(mat3v_load(&w->state->fields[FIELD_DEFORMATION], pack, part),
                                   vec3v_load(&w->state->fields[field], pack, part));
             real *modulus = scratch_at(w->scratch->wave_modulus, 1, k, 0, part);
-            vec_store(modulus, vec_load(modulus) + stiffness * vec3v_dot(f, f));
+            vec_store(modulus, vec_load(modulus) + stiffened(w, pack, part, stiffness * vec3v_dot(f, f)));
         }
 }
 
@@ -106,7 +111,8 @@ static void add_energy(tile_work *w, int field, double stiffness) {
                 f[row] += (double)field_at(&w->state->fields[FIELD_DEFORMATION], pack, row * 3 + c, 0)[lane] *
                           (double)field_at(&w->state->fields[field], pack, c, 0)[lane];
         double stretch = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) - 1;
-        w->energy[1] += 0.5 * stiffness * stretch * stretch *
+        double here = stiffness * scale_of(w->state, w->state->stiffness_scale, pack, lane) * scale_of(w->state, w->state->gamma_scale, pack, lane);
+        w->energy[1] += 0.5 * here * stretch * stretch *
                         (double)field_at(&w->state->fields[FIELD_VOLUME], pack, 0, 0)[lane];
     }
 }
@@ -118,7 +124,7 @@ static void energy(tile_work *w) {
 
 static const parameter parameters[] = {
     [KEY_GAMMA] = {.key = "gamma", .unit = "1", .doc = "stiffness of the first fibre family over the matrix' shear modulus",
-                   .maximum = 1e6, .fallback = {10}, .live = true, .logarithmic = true},
+                   .maximum = 1e6, .fallback = {10}, .live = true, .logarithmic = true, .scale = "gamma_scale"},
     [KEY_GAMMA2] = {.key = "gamma2", .unit = "1", .doc = "the same for the second family", .maximum = 1e6, .live = true,
                     .logarithmic = true},
 };
@@ -126,6 +132,8 @@ static const parameter parameters[] = {
 static const effect_field fields[] = {
     {.key = "fibre", .components = 3, .unit = "1", .written = true, .doc = "first fibre direction at rest, unit"},
     {.key = "fibre2", .components = 3, .unit = "1", .written = true, .doc = "second fibre direction at rest, unit"},
+    {.key = "gamma_scale", .components = 1, .unit = "1", .written = true,
+     .doc = "gamma, and gamma2, over their material's, where gamma varies"},
 };
 
 static const effect_measure measures[] = {
@@ -137,5 +145,5 @@ static const solid_stages stages = {.constants = constants, .stress = stress, .w
 const effect SOLID_EFFECT(fibres) = {
     .name = "fibres", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "stiffness along fibre directions",
     .reference = "AnisoMPM section 5; METHOD.md section 1", .parameters = parameters, .parameter_count = 2,
-    .fields = fields, .field_count = 2, .measures = measures, .measure_count = 1, .needs = ELASTICITY, .stages = &stages,
+    .fields = fields, .field_count = 3, .measures = measures, .measure_count = 1, .needs = ELASTICITY, .stages = &stages,
 };

@@ -76,7 +76,8 @@ static void update(tile_work *w) {
             vec d = vec_load(field_at(damage, pack, 0, part)), H = vec_load(field_at(histories, pack, 0, part));
             vec spread = vec_load(scratch_at(w->scratch->laplacian, 1, k, 0, part));
             vec driving = c[DRIVING] * tensile_energy(c, mat3v_load(&w->state->fields[FIELD_DEFORMATION], pack, part));
-            vec_store(field_at(damage, pack, 0, part), implicit_damage(d, H, spread, rate));
+            driving = scaled(w->state, w->state->stiffness_scale, pack, part, driving);
+            vec_store(field_at(damage, pack, 0, part), implicit_damage(d, H, spread, vec_all(rate)));
             vec_store(field_at(histories, pack, 0, part), vec_min(vec_max(driving, H), vec_all(DRIVING_LIMIT)));
         }
 }

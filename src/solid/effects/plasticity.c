@@ -56,7 +56,7 @@ SIMD_INLINE void add_dyad(mat3v *F, vec factor, vec3v n, vec3v p) {
 }
 
 /* Brings F back to the surface; the increase of plastic strain is returned. Lanes that do not yield keep F's bits, and give 0. */
-SIMD_INLINE vec return_to_surface(mat3v *F, sym3v b, vec limit, real hardening) {
+SIMD_INLINE vec return_to_surface(mat3v *F, sym3v b, vec limit, vec hardening) {
     stretch3v s = mat3v_stretch(*F, b);
     vec half = vec_all((real)0.5), least = vec_all((real)(STRETCH_LEAST * STRETCH_LEAST));
     vec3v strain = {half * vec_log(vec_max(s.square.x, least)), half * vec_log(vec_max(s.square.y, least)),
@@ -85,9 +85,10 @@ static void update(tile_work *w) {
             int32_t pack = w->tile->first_pack + k;
             mat3v F = mat3v_load(F_field, pack, part);
             sym3v b = mat3v_gram(F);
-            vec p = vec_load(field_at(strains, pack, 0, part)), limit = yield + hardening * p;
+            vec p = vec_load(field_at(strains, pack, 0, part)), softness = scaled_down(w->state, w->state->stiffness_scale, pack, part, vec_all(1));
+            vec limit = (yield + hardening * p) * softness;
             if (!vec_any(may_yield(b, limit))) continue;
-            vec flow = return_to_surface(&F, b, limit, hardening);
+            vec flow = return_to_surface(&F, b, limit, hardening * softness);
             mat3v_store(F_field, pack, part, F);
             vec_store(field_at(strains, pack, 0, part), p + flow);
         }

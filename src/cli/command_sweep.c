@@ -1,0 +1,395 @@
+/* sunder sweep: the runs of a sweep, as child processes side by side; what has been done before is not done again. */
+#include "cli/cli.h"
+
+#include "base/json.h"
+#include "base/memory.h"
+#include "base/threads.h"
+#include "script/sweep.h"
+#include "session/session.h"
+#include "store/ledger.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <getopt.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
+
+enum { JOBS = 64, ARGUMENTS = 16 + 2 * (CLI_SETTINGS + SWEEP_SETTINGS + SWEEP_AXES), RUN_TEXT = 400 };
+
+typedef enum run_state { RUN_WAITING, RUN_GOING, RUN_DONE, RUN_FAILED, RUN_SKIPPED } run_state;
+static const char *const state_names[] = {"not started", "interrupted", "done", "failed", "done before"};
+
+typedef struct sweep_run {
+    run_state state;
+    int exit_code;
+    char id[LEDGER_ID], message[RUN_TEXT];
+} sweep_run;
+
+typedef struct job {
+    int run; /* −1: free */
+    FILE *out, *error;
+} job;
+
+typedef struct sweep_command {
+    cli_scene_options given; /* .scene is the sweep's file */
+    const char *database;
+    long jobs, threads, frames;
+    bool json, quiet;
+    char path[1024], tag[64]; /* the ledger; the script's name, by which its runs are found again */
+    sweep plan;
+    int count;
+    sweep_run *runs; // [count]
+    job job[JOBS];
+} sweep_command;
+
+/* ---- one run's settings ------------------------------------------------------------------------------------------ */
+
+static const char *axis_value(const sweep_command *c, const int which[SWEEP_AXES], int axis) {
+    return c->plan.axes[axis].value[which[axis]];
+}
+
+/* Fixed settings, then those of the command line, then the axes: the last one said holds. */
+static int list_settings(const sweep_command *c, int run, script_setting *out) {
+    int which[SWEEP_AXES], count = 0;
+    sweep_cell(&c->plan, run, which);
+    for (int i = 0; i < c->plan.fixed_count; i++) out[count++] = (script_setting){c->plan.fixed[i].name, c->plan.fixed[i].value[0]};
+    for (int i = 0; i < c->given.setting_count; i++) out[count++] = c->given.settings[i];
+    for (int a = 0; a < c->plan.axis_count; a++) out[count++] = (script_setting){c->plan.axes[a].name, axis_value(c, which, a)};
+    return count;
+}
+
+static void describe_run(const sweep_command *c, int run, char text[RUN_TEXT]) {
+    int which[SWEEP_AXES];
+    size_t used = 0;
+    sweep_cell(&c->plan, run, which);
+    text[0] = '\0';
+    for (int a = 0; a < c->plan.axis_count && used < RUN_TEXT; a++)
+        used += (size_t)snprintf(text + used, RUN_TEXT - used, "%s%s=%s", a ? " " : "", c->plan.axes[a].name, axis_value(c, which, a));
+}
+
+static void say(const sweep_command *c, int run) {
+    char text[RUN_TEXT];
+    if (c->quiet) return;
+    describe_run(c, run, text);
+    const sweep_run *r = &c->runs[run];
+    fprintf(c->json ? stderr : stdout, "%d/%d  %-11s  %s  %s%s%s\n", run + 1, c->count, state_names[r->state], *r->id ? r->id : "-", text,
+            *r->message ? "  " : "", r->message);
+    fflush(c->json ? stderr : stdout);
+}
+
+/* ---- what has been done before ----------------------------------------------------------------------------------- */
+
+static status take_id(void *context, const ledger_cell *cells, int count, report *r) {
+    (void)count, (void)r;
+    snprintf(context, LEDGER_ID, "%s", cells[0].text ? cells[0].text : "");
+    return STATUS_OK;
+}
+
+/* Loads the scene as one run would; false with the reports when it cannot be run. */
+static bool identify(const sweep_command *c, int run, char hash[32], int64_t *frames, script_reports *reports) {
+    script_setting settings[SWEEP_SETTINGS + CLI_SETTINGS + SWEEP_AXES];
+    script_options o = script_options_default();
+    o.settings = settings;
+    o.setting_count = list_settings(c, run, settings);
+    o.recipe = c->plan.recipe[0] ? c->plan.recipe : NULL;
+    script *s;
+    if (script_load(c->plan.scene, &o, &s, reports) != STATUS_OK) return false;
+    sources_hash(s, hash);
+    *frames = c->frames >= 0 ? c->frames : c->plan.frames >= 0 ? c->plan.frames : scene_frames(script_scene(s));
+    script_close(s);
+    return true;
+}
+
+static status find_done(ledger *l, const char *hash, int64_t frames, char id[LEDGER_ID], report *r) {
+    char hash_argument[48], frames_argument[48];
+    snprintf(hash_argument, sizeof hash_argument, "hash=%s", hash);
+    snprintf(frames_argument, sizeof frames_argument, "frames=%lld", (long long)frames);
+    const char *const arguments[] = {hash_argument, frames_argument};
+    return ledger_each_row(l, "SELECT id FROM runs_view WHERE scene_hash = :hash AND status = 'done' AND frames_wanted = CAST(:frames AS INTEGER) "
+                              "AND precision = 'f32' ORDER BY run DESC LIMIT 1", arguments, 2, take_id, id, r);
+}
+
+/* Checks every run and marks those that are in the ledger already. STATUS_INPUT when not one can be run: then `reports` says why
+ * the first cannot. */
+static status prepare(sweep_command *c, script_reports *reports, report *r) {
+    ledger *l = NULL;
+    status code = ledger_open(c->path, &l, r);
+    int runnable = 0;
+    static script_reports own;
+    for (int i = 0; i < c->count && code == STATUS_OK; i++) {
+        char hash[32];
+        int64_t frames;
+        if (identify(c, i, hash, &frames, &own)) {
+            runnable++;
+            code = find_done(l, hash, frames, c->runs[i].id, r);
+            if (c->runs[i].id[0]) c->runs[i].state = RUN_SKIPPED;
+        } else {
+            c->runs[i].state = RUN_FAILED;
+            c->runs[i].exit_code = status_exit_code(own.items[0].code);
+            char text[1600];
+            report_format(&own.items[0], text, sizeof text);
+            snprintf(c->runs[i].message, RUN_TEXT, "%.*s", RUN_TEXT - 1, text);
+            if (reports->count == 0) *reports = own;
+        }
+    }
+    if (l) ledger_close(l);
+    if (code == STATUS_OK && runnable == 0) return STATUS_INPUT;
+    reports->count = 0;
+    return code;
+}
+
+/* ---- children ---------------------------------------------------------------------------------------------------- */
+
+static volatile sig_atomic_t stopped;
+static volatile pid_t children[JOBS];
+
+/* A terminal's Ctrl-C reaches the children by itself. */
+static void on_signal(int number) {
+    stopped = 1;
+    for (int i = 0; number != SIGINT && i < JOBS; i++)
+        if (children[i] > 0) kill(children[i], number);
+}
+
+static void catch_signals(void) {
+    struct sigaction action = {.sa_handler = on_signal};
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    sigaction(SIGHUP, &action, NULL);
+}
+
+static int fill_arguments(const sweep_command *c, int run, char *argv[ARGUMENTS], char (*text)[300]) {
+    script_setting settings[SWEEP_SETTINGS + CLI_SETTINGS + SWEEP_AXES];
+    int count = 0, texts = 0, setting_count = list_settings(c, run, settings);
+    char *const head[] = {"sunder", "run", (char *)c->plan.scene, "--json", "--quiet", "--checkpoint-every", "0", "--db", (char *)c->path, "--threads"};
+    for (size_t i = 0; i < sizeof head / sizeof *head; i++) argv[count++] = head[i];
+    snprintf(text[texts], sizeof text[0], "%ld", c->threads);
+    argv[count++] = text[texts++];
+    if (c->frames >= 0 || c->plan.frames >= 0) {
+        snprintf(text[texts], sizeof text[0], "%lld", (long long)(c->frames >= 0 ? c->frames : c->plan.frames));
+        argv[count++] = "--frames", argv[count++] = text[texts++];
+    }
+    if (c->plan.recipe[0]) argv[count++] = "--recipe", argv[count++] = (char *)c->plan.recipe;
+    for (int i = 0; i < setting_count; i++) {
+        snprintf(text[texts], sizeof text[0], "%.140s=%.140s", settings[i].key, settings[i].value);
+        argv[count++] = "--set", argv[count++] = text[texts++];
+    }
+    argv[count] = NULL;
+    return count;
+}
+
+static status launch(sweep_command *c, int slot, int run, report *r) {
+    static char text[CLI_SETTINGS + SWEEP_SETTINGS + SWEEP_AXES + 2][300];
+    char *argv[ARGUMENTS];
+    job *j = &c->job[slot];
+    posix_spawn_file_actions_t actions;
+    pid_t pid = 0;
+    fill_arguments(c, run, argv, text);
+    j->out = tmpfile();
+    j->error = tmpfile();
+    if (!j->out || !j->error) return report_set(r, STATUS_SYSTEM, "a temporary file for a run's output: %s", strerror(errno));
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, fileno(j->out), STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, fileno(j->error), STDERR_FILENO);
+    int trouble = posix_spawn(&pid, "/proc/self/exe", &actions, NULL, argv, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (trouble) return report_set(r, STATUS_SYSTEM, "starting a run: %s", strerror(trouble));
+    j->run = run;
+    children[slot] = pid;
+    c->runs[run].state = RUN_GOING;
+    return STATUS_OK;
+}
+
+/* The run's id from its summary, and the last line of what it complained about. */
+static void read_output(job *j, sweep_run *run) {
+    char line[1024];
+    rewind(j->out), rewind(j->error);
+    while (fgets(line, sizeof line, j->out)) {
+        const char *at = strstr(line, "\"run_id\": \"");
+        if (at) snprintf(run->id, sizeof run->id, "%.*s", (int)strcspn(at + 11, "\""), at + 11);
+    }
+    while (run->state == RUN_FAILED && fgets(line, sizeof line, j->error)) {
+        line[strcspn(line, "\n")] = '\0';
+        if (*line) snprintf(run->message, RUN_TEXT, "%.*s", RUN_TEXT - 1, line);
+    }
+}
+
+static void close_job(job *j) {
+    if (j->out) fclose(j->out);
+    if (j->error) fclose(j->error);
+    *j = (job){.run = -1};
+}
+
+static void reap(sweep_command *c, pid_t pid, int outcome) {
+    for (int slot = 0; slot < c->jobs; slot++) {
+        if (children[slot] != pid) continue;
+        children[slot] = 0;
+        job *j = &c->job[slot];
+        sweep_run *run = &c->runs[j->run];
+        run->exit_code = WIFEXITED(outcome) ? WEXITSTATUS(outcome) : 128 + WTERMSIG(outcome);
+        if (run->exit_code != 130) run->state = run->exit_code == 0 ? RUN_DONE : RUN_FAILED;
+        read_output(j, run);
+        say(c, j->run);
+        close_job(j);
+    }
+}
+
+static status run_all(sweep_command *c, report *r) {
+    int next = 0, going = 0;
+    status code = STATUS_OK;
+    catch_signals();
+    for (int slot = 0; slot < JOBS; slot++) c->job[slot].run = -1;
+    for (int i = 0; i < c->count; i++)
+        if (c->runs[i].state != RUN_WAITING) say(c, i);
+    for (;;) {
+        for (int slot = 0; slot < c->jobs && !stopped && code == STATUS_OK; slot++) {
+            while (next < c->count && c->runs[next].state != RUN_WAITING) next++;
+            if (next == c->count || c->job[slot].run >= 0) continue;
+            code = launch(c, slot, next, r);
+            if (code == STATUS_OK) going++;
+            else close_job(&c->job[slot]);
+        }
+        if (going == 0) return code;
+        int outcome;
+        pid_t pid = waitpid(-1, &outcome, 0);
+        if (pid < 0) continue;
+        reap(c, pid, outcome);
+        going--;
+    }
+}
+
+/* ---- the end ----------------------------------------------------------------------------------------------------- */
+
+/* Tags what has been done, so that it is found together; a run that has the tag already keeps it. */
+static status tag_runs(const sweep_command *c, report *r) {
+    ledger *l = NULL;
+    status code = ledger_open(c->path, &l, r);
+    if (code == STATUS_OK) code = ledger_batch_begin(l, r);
+    if (code != STATUS_OK) {
+        if (l) ledger_close(l);
+        return code;
+    }
+    for (int i = 0; i < c->count && code == STATUS_OK; i++)
+        if (c->runs[i].id[0]) code = ledger_tag(l, c->runs[i].id, c->tag, true, r);
+    code = ledger_batch_end(l, code, r);
+    ledger_close(l);
+    return code;
+}
+
+static int count_state(const sweep_command *c, run_state state) {
+    int count = 0;
+    for (int i = 0; i < c->count; i++) count += c->runs[i].state == state;
+    return count;
+}
+
+static void write_run(json_writer *w, const sweep_command *c, int run) {
+    int which[SWEEP_AXES];
+    sweep_cell(&c->plan, run, which);
+    json_object(w);
+    json_key(w, "settings");
+    json_object(w);
+    for (int a = 0; a < c->plan.axis_count; a++) json_member_string(w, c->plan.axes[a].name, axis_value(c, which, a));
+    json_object_end(w);
+    json_member_string(w, "status", state_names[c->runs[run].state]);
+    json_member_string(w, "run_id", c->runs[run].id[0] ? c->runs[run].id : NULL);
+    json_member_integer(w, "exit_code", c->runs[run].exit_code);
+    json_member_string(w, "message", c->runs[run].message[0] ? c->runs[run].message : NULL);
+    json_object_end(w);
+}
+
+static status print_json(const sweep_command *c, report *r) {
+    json_writer w;
+    json_begin(&w, 2);
+    json_object(&w);
+    json_member_string(&w, "title", c->plan.title);
+    json_member_string(&w, "scene", c->plan.scene);
+    json_member_string(&w, "tag", c->tag);
+    json_member_string(&w, "db", c->path);
+    json_member_integer(&w, "done", count_state(c, RUN_DONE));
+    json_member_integer(&w, "done_before", count_state(c, RUN_SKIPPED));
+    json_member_integer(&w, "failed", count_state(c, RUN_FAILED));
+    json_key(&w, "runs");
+    json_array(&w);
+    for (int i = 0; i < c->count; i++) write_run(&w, c, i);
+    json_array_end(&w);
+    json_object_end(&w);
+    status code = json_finish(&w, r);
+    if (code == STATUS_OK) puts(w.text);
+    json_free(&w);
+    return code;
+}
+
+static void name_tag(sweep_command *c) {
+    const char *slash = strrchr(c->given.scene, '/'), *name = slash ? slash + 1 : c->given.scene;
+    snprintf(c->tag, sizeof c->tag, "%.*s", (int)strcspn(name, ". ,"), name);
+}
+
+static int finish(sweep_command *c) {
+    report r;
+    status code = tag_runs(c, &r);
+    if (code == STATUS_OK && c->json) code = print_json(c, &r);
+    if (code != STATUS_OK) return cli_fail(&r);
+    int failed = count_state(c, RUN_FAILED);
+    if (!c->quiet && !c->json)
+        printf("%d done, %d done before, %d failed, of %d: sunder runs list --where \"tags LIKE '%%%s%%'\"\n", count_state(c, RUN_DONE),
+               count_state(c, RUN_SKIPPED), failed, c->count, c->tag);
+    return stopped ? 130 : failed ? 1 : 0;
+}
+
+/* ---- the command ------------------------------------------------------------------------------------------------- */
+
+enum { OPTION_SET = 256, OPTION_FRAMES, OPTION_THREADS, OPTION_DB, OPTION_JSON, OPTION_QUIET };
+
+static const struct option long_options[] = {
+    {"set", required_argument, NULL, OPTION_SET},         {"frames", required_argument, NULL, OPTION_FRAMES},
+    {"threads", required_argument, NULL, OPTION_THREADS}, {"db", required_argument, NULL, OPTION_DB},
+    {"json", no_argument, NULL, OPTION_JSON},             {"quiet", no_argument, NULL, OPTION_QUIET},
+    {"jobs", required_argument, NULL, 'j'},               {NULL, 0, NULL, 0}};
+
+static int parse(sweep_command *c, int count, char **arguments) {
+    int option, code = 0;
+    while (code == 0 && (option = getopt_long(count, arguments, "j:", long_options, NULL)) != -1) {
+        if (option == OPTION_SET) code = cli_add_setting(&c->given, "sweep", optarg);
+        else if (option == OPTION_FRAMES) code = cli_number("sweep", "--frames", optarg, 0, 1000000000, &c->frames);
+        else if (option == OPTION_THREADS) code = cli_number("sweep", "--threads", optarg, 1, 256, &c->threads);
+        else if (option == 'j') code = cli_number("sweep", "-j", optarg, 1, JOBS, &c->jobs);
+        else if (option == OPTION_DB) c->database = optarg;
+        else if (option == OPTION_JSON) c->json = true;
+        else if (option == OPTION_QUIET) c->quiet = true;
+        else return cli_usage("sweep", "wrong option");
+    }
+    if (code) return code;
+    if (optind < count) c->given.scene = arguments[optind++];
+    if (optind < count) return cli_usage("sweep", "one sweep at a time, found '%s' too", arguments[optind]);
+    if (!c->given.scene) return cli_usage("sweep", "expected a sweep: a Lua file that returns s.sweep { … }");
+    if (c->threads == 0) c->threads = processor_count() > c->jobs ? processor_count() / c->jobs : 1;
+    name_tag(c);
+    return 0;
+}
+
+int command_sweep(int count, char **arguments) {
+    static sweep_command c = {.jobs = 1, .frames = -1};
+    static script_reports reports;
+    report r;
+    int code = parse(&c, count, arguments);
+    if (code) return code;
+    if (sweep_load(c.given.scene, &c.plan, &reports) != STATUS_OK) return cli_fail_script(&reports);
+    status found = STATUS_OK;
+    if (c.database) snprintf(c.path, sizeof c.path, "%s", c.database);
+    else found = ledger_default_path(c.path, sizeof c.path, &r);
+    if (found != STATUS_OK) return cli_fail(&r);
+    c.count = sweep_count(&c.plan);
+    c.runs = memory_allocate_array((size_t)c.count, sizeof *c.runs);
+    if (!c.runs) return cli_fail((report_set(&r, STATUS_SYSTEM, "out of memory for %d runs", c.count), &r));
+    status prepared = prepare(&c, &reports, &r);
+    if (prepared == STATUS_OK) prepared = run_all(&c, &r);
+    code = prepared == STATUS_OK ? finish(&c) : reports.count > 0 ? cli_fail_script(&reports) : cli_fail(&r);
+    memory_free(c.runs, (size_t)c.count * sizeof *c.runs);
+    return code;
+}

@@ -98,7 +98,7 @@ static int parse_option(table1_request *q, int option) {
     case 'n': return parse_whole("--frames", 1, SCENE_TIMING_FRAMES, &q->frames);
     case 'w': return parse_whole("--warm", 0, SCENE_TIMING_FRAMES, &q->warm);
     case 't': return parse_whole("--threads", 1, 256, &q->threads);
-    case 's': return parse_real("--scale", 1e-4, 100, &q->scale);
+    case 's': return parse_real("--scale", 1e-4, 1000, &q->scale);
     case 'l': return parse_real("--time-limit", 1e-3, 1e6, &q->limit);
     case 'p':
         if (strcmp(optarg, "f32") != 0 && strcmp(optarg, "f64") != 0)

@@ -16,7 +16,7 @@ typedef struct table1_row {
     double seconds;      /* the paper's */
     double fps;          /* the paper's frame is 1/fps; 0 for sheets */
     double dt, dx;       /* the paper's step; its grid spacing, or distance of a sheet's particles */
-    int warm;            /* frames passed over before timing: until the load is on */
+    int warm;            /* frames passed over before timing: until something is damaged, where that is not long */
     const char *remark;  /* where our scene is not the paper's; "" */
 } table1_row;
 

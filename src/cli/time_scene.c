@@ -55,10 +55,10 @@ static double median(double *values, int count) {
     return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
 }
 
-/* history[0] is the initial state; the frames after `warm` are timed, or the last one where there are no more. */
-static void take_frames(const session_snapshot *p, int warm, scene_timing *out) {
+/* history[0] is the initial state; the last `wanted` frames are timed, or all where there are no more. */
+static void take_frames(const session_snapshot *p, int wanted, scene_timing *out) {
     static double seconds[SCENE_TIMING_FRAMES], a_step[SCENE_TIMING_FRAMES], whole[SCENE_TIMING_FRAMES];
-    int last = p->history_count - 1, first = warm < last ? warm : last - 1;
+    int last = p->history_count - 1, first = last > wanted ? last - wanted : 0;
     out->warm = first;
     out->frames = last - first;
     double sum = 0;
@@ -98,7 +98,7 @@ static status take_figures(const session_snapshot *p, const scene_timing_request
     if (!out->limited) snprintf(out->warning, sizeof out->warning, "%s", p->message);
     out->setup_seconds = p->history_count ? p->history[0].wall : NAN;
     if (p->history_count > 1) {
-        take_frames(p, q->warm, out);
+        take_frames(p, q->frames, out);
         return STATUS_OK;
     }
     if (p->unfinished.steps == 0) return report_set(r, STATUS_SYSTEM, "not one step within the time limit of %g s", q->limit);
@@ -108,13 +108,15 @@ static status take_figures(const session_snapshot *p, const scene_timing_request
 
 /* ---- running ----------------------------------------------------------------------------------------------------- */
 
-/* Screens copy every particle when they poll: here nobody polls until the end, so that nothing but the run is timed. */
+/* Screens copy every particle when they poll: here nobody polls between the initial state and the end, so that nothing but the run is
+ * timed. */
 static status watch(session *s, const scene_timing_request *q, scene_timing *out, report *r) {
     static session_snapshot snapshot;
     running = s;
     if (interrupted) session_abandon(s);
-    out->limited = !session_wait(s, q->limit);
     memset(&snapshot, 0, sizeof snapshot);
+    while (!session_wait(s, 0.002) && snapshot.history_count == 0) session_poll(s, &snapshot);
+    out->limited = !session_wait(s, q->limit);
     if (out->limited) {
         session_poll(s, &snapshot); /* a warning, before the end's message takes its place */
         snprintf(out->warning, sizeof out->warning, "%s", snapshot.message);

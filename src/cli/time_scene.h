@@ -14,8 +14,8 @@ typedef struct scene_timing_request {
     const script_setting *settings; /* [setting_count] */
     int setting_count;
     int threads, precision;
-    int warm, frames; /* frames passed over; frames timed, at least 1 */
-    double limit;     /* seconds after the set-up; the run is then left between two steps */
+    int warm, frames; /* frames passed over; frames timed, at least 1: always the last ones, wherever the limit stops the run */
+    double limit;     /* seconds after the initial state is on disk; the run is then left between two steps */
 } scene_timing_request;
 
 typedef struct scene_timing {

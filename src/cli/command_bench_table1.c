@@ -18,7 +18,7 @@ enum { ROWS = 32, SETTINGS = TABLE1_SETTINGS + 3, TEXT = 320 };
 
 typedef struct table1_request {
     bool json, paper_dt, solid, sheet;
-    int frames, warm; /* warm −1: the row's own */
+    int frames, warm; /* −1: the row's own */
     int threads, precision;
     double scale, limit;
     const char *scenes;
@@ -110,6 +110,14 @@ static int parse_option(table1_request *q, int option) {
     return 0;
 }
 
+static int warm_of(const table1_request *q, const table1_row *row) {
+    return q->warm < 0 ? row->warm : q->warm;
+}
+
+static int frames_of(const table1_request *q, const table1_row *row) {
+    return q->frames < 0 ? row->frames : q->frames;
+}
+
 static int parse(table1_request *q, int count, char **arguments) {
     int option, code;
     while ((option = getopt_long(count, arguments, "", long_options, NULL)) != -1)
@@ -121,7 +129,7 @@ static int parse(table1_request *q, int count, char **arguments) {
         for (int i = 0; i < rows; i++)
             if (all[i].sheet ? q->sheet : q->solid) q->rows[q->row_count++] = &all[i];
     for (int i = 0; i < q->row_count; i++)
-        if ((q->warm < 0 ? q->rows[i]->warm : q->warm) + q->frames > SCENE_TIMING_FRAMES)
+        if (warm_of(q, q->rows[i]) + frames_of(q, q->rows[i]) > SCENE_TIMING_FRAMES)
             return cli_usage("bench", "table1: --frames and --warm: at most %d together", SCENE_TIMING_FRAMES);
     if (access(q->scenes, R_OK | X_OK) == 0) return 0;
     report r;
@@ -156,8 +164,7 @@ static scene_timing_request timing_request(const table1_request *q, const measur
         settings[i] = (script_setting){text[i], equals + 1};
     }
     return (scene_timing_request){.scene = m->scene, .settings = settings, .setting_count = m->setting_count, .threads = q->threads,
-                                  .precision = q->precision, .warm = q->warm < 0 ? m->row->warm : q->warm, .frames = q->frames,
-                                  .limit = q->limit};
+                                  .precision = q->precision, .warm = warm_of(q, m->row), .frames = frames_of(q, m->row), .limit = q->limit};
 }
 
 static void add_note(measured_row *m, const char *text) {
@@ -272,12 +279,13 @@ static void print_row(const table1_request *q, const measured_row *m, FILE *out)
     if (m->outcome != TIMED) {
         fprintf(out, "%9ld %9.4g  %s\n", row->particles, row->seconds, outcome_name(m));
     } else {
-        char frames[32], faster[16] = "-", whole[16] = "-";
+        char frames[32], faster[16] = "-", whole[16] = "-", steps[16] = "-";
         snprintf(frames, sizeof frames, "%d+%d", t->warm, t->frames);
         if (q->scale == 1) snprintf(faster, sizeof faster, "%s%.1f", t->extrapolated ? "~" : "", ratio_of(q, m));
+        if (!row->sheet) snprintf(steps, sizeof steps, "%.0f", paper_steps(row));
         if (!row->sheet && !t->extrapolated) snprintf(whole, sizeof whole, "%.4g", t->run_seconds);
-        fprintf(out, "%9lld %9.4g %s%8.4g %9s %7s %3d %7.4g %7.4g %9.3g %9.3g %6.4g %7.3g %8s %7.3g %7.3g\n", (long long)t->particles, row->seconds,
-                t->extrapolated ? "~" : " ", our_seconds(m), whole, faster, t->threads, t->steps, paper_steps(row), t->dt, row->dt,
+        fprintf(out, "%9lld %9.4g %s%8.4g %9s %7s %3d %7.1f %7s %9.3g %9.3g %6.4g %7.3g %8s %7.3g %7.3g\n", (long long)t->particles, row->seconds,
+                t->extrapolated ? "~" : " ", our_seconds(m), whole, faster, t->threads, t->steps, steps, t->dt, row->dt,
                 1e-6 * our_rate(m), 1e-6 * paper_rate(row), t->extrapolated ? "part" : frames, t->damage_max, t->broken_fraction);
     }
     if (m->note[0]) fprintf(out, "               %s\n", m->note);
@@ -377,7 +385,7 @@ static status do_row(const table1_request *q, measured_row *m, FILE *out) {
 int command_bench_table1(int count, char **arguments) {
     static table1_request q;
     static measured_row rows[ROWS];
-    q = (table1_request){.solid = true, .frames = 3, .warm = -1, .precision = 32, .scale = 1, .limit = 60, .scenes = "scenes"};
+    q = (table1_request){.solid = true, .frames = -1, .warm = -1, .precision = 32, .scale = 1, .limit = 60, .scenes = "scenes"};
     int worst = 0, measured = 0, code = parse(&q, count, arguments);
     if (code) return code;
     FILE *out = q.json ? stderr : stdout;

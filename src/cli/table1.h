@@ -17,6 +17,7 @@ typedef struct table1_row {
     double fps;          /* the paper's frame is 1/fps; 0 for sheets */
     double dt, dx;       /* the paper's step; its grid spacing, or distance of a sheet's particles */
     int warm;            /* frames passed over before timing: until something is damaged, where that is not long */
+    int frames;          /* timed if nothing else is asked for: a sheet's have a few steps only, of a fraction of a millisecond each */
     const char *remark;  /* where our scene is not the paper's; "" */
 } table1_row;
 

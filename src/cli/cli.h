@@ -42,6 +42,9 @@ typedef struct sheet_bench_matrix {
 /* command_bench_sheet.c: times it and prints; the exit code. */
 int command_bench_sheet(const sheet_bench_matrix *q);
 
+/* command_bench_table1.c: `bench table1`, with its own options; arguments[0] is "table1". The exit code. */
+int command_bench_table1(int count, char **arguments);
+
 /* Prints a report as one line on standard error, after "sunder: ", and returns its exit code. */
 int cli_fail(const report *r);
 

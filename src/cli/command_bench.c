@@ -130,9 +130,9 @@ static int parse(bench_request *q, int count, char **arguments) {
         int code = parse_option(q, option);
         if (code) return code;
     }
-    if (optind != count - 1) return cli_usage("bench", "expected what to measure: step or sheet");
+    if (optind != count - 1) return cli_usage("bench", "expected what to measure: step, sheet, or table1 as its first argument");
     q->sheet = strcmp(arguments[optind], "sheet") == 0;
-    if (!q->sheet && strcmp(arguments[optind], "step") != 0) return cli_usage("bench", "%s: expected step or sheet", arguments[optind]);
+    if (!q->sheet && strcmp(arguments[optind], "step") != 0) return cli_usage("bench", "%s: expected step, sheet, or table1 as its first argument", arguments[optind]);
     if (q->sheet && (q->case_count || q->csv)) return cli_usage("bench", "sheet: --case and --csv belong to step");
     complete(q);
     return 0;
@@ -354,6 +354,7 @@ int command_bench(int count, char **arguments) {
     static bench_request q;
     static bench_report b;
     q.options = bench_options_default();
+    if (count > 1 && strcmp(arguments[1], "table1") == 0) return command_bench_table1(count - 1, arguments + 1);
     int code = parse(&q, count, arguments);
     if (code) return code;
     if (q.sheet)

@@ -18,8 +18,10 @@ static const command commands[] = {
     {"runs", "runs list | show RUN | diff RUN RUN [--db FILE] [--json]", "ask the ledger about past runs", command_runs},
     {"render", "render RUN [--frame N] [--out FILE.png] [--width N] [--height N] [--yaw D] [--pitch D] [--zoom PERCENT]", "draw a frame", command_render},
     {"doctor", "doctor [--json]", "say what this machine and this build can do", command_doctor},
-    {"bench", "bench step|sheet [--json] [--csv FILE] [--full] [--case NAME]… [--particles N] [--threads N] [--precision f32|f64] [--seconds S] [--repeat N]",
-     "measure how fast steps are, beside what the machine could do", command_bench},
+    {"bench", "bench step|sheet [--json] [--csv FILE] [--full] [--case NAME]… [--particles N] [--threads N] [--precision f32|f64] [--seconds S] [--repeat N]\n"
+              "         bench table1 [--paper solid|sheet|both] [--row NAME]… [--frames N] [--warm N] [--paper-dt] [--scale F] [--time-limit S] [--threads N]\n"
+              "                      [--precision f32|f64] [--scenes DIR] [--json]",
+     "measure how fast steps are, beside what the machine could do; table1: seconds a frame, beside the papers'", command_bench},
     {"help", "help [effects]", "list the commands, or all effects with their parameters", command_help},
 };
 

@@ -52,7 +52,8 @@ static void log_frame(session *s, double seconds) {
 
 static void take_sample(session *s, double seconds) {
     const solid_measures *m = &s->measures.solid;
-    s->sample = (session_sample){.frame = s->measures.frame, .time = s->measures.time, .seconds = seconds, .kinetic = m->kinetic,
+    s->sample = (session_sample){.frame = s->measures.frame, .step = s->measures.steps, .time = s->measures.time, .seconds = seconds,
+                                 .wall = session_clock() - s->wall_start, .kinetic = m->kinetic,
                                  .elastic = m->elastic, .fibre = m->fibre, .work = m->grip_work, .damage_mean = m->damage_mean,
                                  .damage_max = m->damage_max, .broken_fraction = m->broken_fraction, .dt = s->measures.dt_min};
     memcpy(s->sample.histogram, m->histogram, sizeof s->sample.histogram);
@@ -128,6 +129,9 @@ static status run_frames(session *s, report *r) {
         double seconds = session_clock() - start;
         s->step_wall += seconds;
         if (s->last_frame_wall == 0) s->last_frame_wall = seconds; /* the first frame's, until its writing is known too */
+        if (code == STATUS_INTERRUPTED)
+            s->unfinished = (session_unfinished){.steps = simulation_steps(s->simulation) - s->measures.steps,
+                                                 .time = simulation_time(s->simulation) - s->measures.time, .seconds = seconds};
         if (code == STATUS_OK) code = settle_frame(s, seconds, true, r);
         s->last_frame_wall = session_clock() - start;
     }

@@ -34,6 +34,7 @@ static void refresh(session *s, session_state state) {
     if (state == SESSION_ENDED && s->outcome != STATUS_OK) report_format(&s->report, p->message, sizeof p->message);
     p->wall = session_clock() - s->wall_start;
     p->step_wall = s->step_wall;
+    p->unfinished = s->unfinished;
 }
 
 void publish_state(session *s, session_state state) {

@@ -38,12 +38,19 @@ typedef enum session_state { SESSION_STARTING, SESSION_RUNNING, SESSION_PAUSED, 
 
 /* Numbers of one frame: kept for sparklines and progress. */
 typedef struct session_sample {
-    int64_t frame;
+    int64_t frame, step;  /* step: how many there were up to here */
     double time, seconds; /* simulated time; wall time of this frame's steps */
+    double wall;          /* since the session's start, when this frame had been measured and not yet been written */
     double kinetic, elastic, fibre, work;
     double damage_mean, damage_max, broken_fraction, dt;
     double histogram[SESSION_BINS]; /* fraction of particles by damage, 50 equal bins over [0,1] */
 } session_sample;
+
+/* Of a frame that was abandoned between its steps: how many were made, the simulated time they cover, and their wall time. */
+typedef struct session_unfinished {
+    int64_t steps;
+    double time, seconds;
+} session_unfinished;
 
 /* What a screen shows. Arrays have shape [particles][…], rows by id, and belong to the snapshot. */
 typedef struct session_snapshot {
@@ -58,6 +65,7 @@ typedef struct session_snapshot {
     int64_t frame, frames, step, particles;
     double time, duration, dt, dt_min, dt_max;
     double seconds_per_frame, seconds_left, wall, step_wall;
+    session_unfinished unfinished; /* all 0 when the run ended with a whole frame */
     session_sample now;
     int history_count; /* samples of the last SESSION_HISTORY frames, oldest first */
     session_sample history[SESSION_HISTORY];

@@ -3,9 +3,11 @@
 
 Usage: test_bench.py SUNDER
 """
-import csv, json, os, subprocess, sys, tempfile
+import csv, json, math, os, signal, subprocess, sys, tempfile, time
 
 SUNDER = os.path.abspath(sys.argv[1])
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+SCENES = os.path.join(ROOT, "scenes")
 failures, checks = [], 0
 
 
@@ -85,9 +87,123 @@ def test_sheet():
         check(abs(row["bond_steps_per_s"] / rate - 1) < 1e-6, "sheet: rates agree")
 
 
+# Both papers' first tables, copied from the papers once more: particles, seconds (a frame; of sheets 20 steps), step, frames a second.
+PAPER = {
+    "meat": (500e3, 19.30, 5e-4, 24), "tube_pull": (50e3, 1.403, 1e-3, 24), "tube_compress": (400e3, 83.36, 1e-4, 24),
+    "pork_belly": (500e3, 38.78, 2.5e-4, 24), "orange": (80e3, 4.890, 1e-3, 24), "fish": (50e3, 0.5625, 1e-3, 48),
+    "cheese": (500e3, 48.87, 2e-4, 24), "lance": (650e3, 111.9, 1.25e-4, 24), "heart": (500e3, 23.88, 5.1e-4, 24),
+    "bone": (200e3, 1974, 1e-6, 48),
+    "stretch": (10e3, 0.2, 1e-4, None), "shear": (10e3, 0.2, 1e-4, None), "crack_path": (10e3, 0.2, 1e-4, None),
+    "foil": (2.5e3, 0.6, 3e-4, None), "rubber": (2.5e3, 0.2, 5e-4, None), "seaweed": (2.5e3, 0.2, 1e-4, None),
+}
+
+
+def table1(*arguments, scenes=SCENES, expected=0):
+    """The rows of a run by name, and what people were told; nothing may be left in the folder for temporary files."""
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([SUNDER, "bench", "table1", "--json", "--scenes", scenes, *arguments], capture_output=True, text=True, timeout=600,
+                              env={**os.environ, "TMPDIR": folder})
+        check(os.listdir(folder) == [], f"{arguments}: left behind {os.listdir(folder)}")
+    check(done.returncode == expected, f"{arguments}: exit code {done.returncode}: {done.stderr}")
+    return {row["name"]: row for row in json.loads(done.stdout)["rows"]}, done.stderr
+
+
+def test_table1_figures_and_missing_scenes():
+    with tempfile.TemporaryDirectory() as empty:
+        rows, told = table1("--paper", "both", scenes=empty)
+        check(list(rows) == list(PAPER), f"all rows, in the papers' order: {list(rows)}")
+        check(told.count("no scene yet") == len(PAPER), "each missing scene is said")
+        check(set(table1("--paper", "sheet", scenes=empty)[0]) == {n for n in PAPER if not PAPER[n][3]}, "--paper sheet")
+        check(set(table1(scenes=empty)[0]) == {n for n in PAPER if PAPER[n][3]}, "--paper solid is the default")
+    for name, (particles, seconds, dt, fps) in PAPER.items():
+        row = rows[name]
+        check(row["status"] == "no scene yet" and "s_per_frame" not in row, f"{name}: {row}")
+        check((row["paper_particles"], row["paper_dt"]) == (particles, dt), f"{name}: {row}")
+        check(row["paper_s_per_frame" if fps else "paper_s_per_20_steps"] == seconds, f"{name}: {row}")
+        check(os.path.exists(os.path.join(SCENES, os.path.relpath(row["scene"], empty))), f"{name}: {row['scene']} is not ours")
+        if fps:
+            check(f"fps={fps}" in row["settings"] and f"particles={particles:.0f}" in row["settings"], f"{name}: {row['settings']}")
+
+
+def test_table1_row():
+    rows, told = table1("--row", "tube_pull", "--scale", "0.04", "--frames", "2", "--warm", "1", "--threads", "1")
+    row = rows["tube_pull"]
+    for key in "name scene particles paper_s_per_frame s_per_frame ratio threads steps_per_frame dt".split():
+        check(key in row, f"'{key}'")
+    check(row["status"] == "timed" and row["threads"] == 1 and (row["warm"], row["frames"]) == (1, 2), f"{row}")
+    check(1600 < row["particles"] < 2400 and row["scale"] == 0.04 and "0.04 times the paper's" in told, "the reduction shows")
+    check(row["ratio"] is None, "no ratio where particle counts differ")
+    check(abs(row["steps_per_frame"] * row["dt"] * 24 - 1) < 1e-6, f"steps fill a frame: {row}")
+    check(0 < row["s_per_frame"] < row["run_s_per_frame"], f"a run does more than steps: {row}")
+    rate = row["particles"] * row["steps_per_frame"] / row["s_per_frame"]
+    check(abs(row["particle_steps_per_s"] / rate - 1) < 0.5, f"rate: {row}")
+
+
+def test_table1_sheet_at_the_papers_count():
+    row = table1("--row", "rubber", "--frames", "1", "--warm", "0", "--threads", "1")[0]["rubber"]
+    check(2400 < row["particles"] < 2600, f"{row['particles']} particles")
+    check(abs(row["s_per_20_steps"] * row["steps_per_frame"] / (20 * row["s_per_frame"]) - 1) < 1e-9, f"{row}")
+    check(abs(row["ratio"] * row["s_per_20_steps"] / 0.2 - 1) < 1e-9, f"ratio is the paper's seconds over ours: {row}")
+
+
+def test_table1_papers_step():
+    row = table1("--row", "tube_pull", "--scale", "0.04", "--frames", "1", "--warm", "0", "--threads", "1", "--paper-dt")[0]["tube_pull"]
+    check(row["dt_from"] == "paper" and "dt=0.001" in row["settings"], f"{row}")
+    check(row["steps_per_frame"] == row["paper_steps_per_frame"] == math.ceil(1000 / 24), f"{row}")
+
+
+def test_table1_papers_step_over_the_limit():
+    # A tenth of the particles' distance: a tenth of the step.
+    row = table1("--row", "seaweed", "--scale", "100", "--threads", "1", "--paper-dt", "--time-limit", "1")[0]["seaweed"]
+    check(row["dt_from"] == "auto" and not any(s.startswith("dt=") for s in row["settings"]), f"{row}")
+    check("over the limit" in row["note"] and "'linear'" in row["note"] and row["dt"] < 1e-4, f"{row}")
+
+
+def test_table1_time_limit():
+    row = table1("--row", "bone", "--scale", "0.2", "--time-limit", "1", "--threads", "1")[0]["bone"]
+    check(row["status"] == "extrapolated" and row["extrapolated"] and row["frames"] == 0 and "extrapolated" in row["note"], f"{row}")
+    check(abs(row["steps_per_frame"] * row["dt"] * 48 - 1) < 1e-6, f"steps fill a frame: {row}")
+    check(row["s_per_frame"] > 1 and row["run_s_per_frame"] is None, f"longer than the limit: {row}")
+
+
+def test_table1_failing_row_does_not_stop_the_others():
+    with tempfile.TemporaryDirectory() as scenes:
+        os.makedirs(os.path.join(scenes, "solid"))
+        with open(os.path.join(scenes, "solid", "meat.lua"), "w") as scene:
+            scene.write("return 1\n")
+        with open(os.path.join(scenes, "solid", "tube_pull.lua"), "w") as scene:
+            scene.write(open(os.path.join(SCENES, "solid", "tube_pull.lua")).read())
+        os.symlink(os.path.join(ROOT, "recipes"), os.path.join(scenes, "recipes"))
+        rows, told = table1("--row", "meat", "--row", "tube_pull", "--scale", "0.02", "--frames", "1", "--warm", "0", scenes=scenes, expected=2)
+    check(rows["meat"]["status"] == "failed" and "meat.lua" in rows["meat"]["note"], f"{rows['meat']}")
+    check(rows["tube_pull"]["status"] == "timed", f"{rows['tube_pull']}")
+
+
+def test_table1_interrupted():
+    with tempfile.TemporaryDirectory() as folder:
+        run = subprocess.Popen([SUNDER, "bench", "table1", "--scenes", SCENES, "--row", "bone", "--row", "meat", "--scale", "0.2"],
+                               stdout=subprocess.PIPE, text=True, env={**os.environ, "TMPDIR": folder})
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline and not any("000000.hdf" in names for _, _, names in os.walk(folder)):
+            time.sleep(0.05)
+        run.send_signal(signal.SIGINT)
+        out = run.communicate(timeout=60)[0]
+        check(run.returncode == 130 and "interrupted" in out and "meat.lua" not in out, f"{run.returncode}: {out}")
+        check(os.listdir(folder) == [], f"left behind {os.listdir(folder)}")
+
+
+def test_table1_wrong_arguments():
+    for arguments, expected in ((["--row", "tube_pul"], "did you mean tube_pull"), (["--paper", "solids"], "solid, sheet or both"),
+                                (["--scale", "0"], "a number"), (["--frames", "0"], "whole number"), (["tube_pull"], "--row"),
+                                (["--time-limit", "x"], "a number"), (["--frames", "500", "--warm", "20"], "together"),
+                                (["--scenes", "/nowhere"], "--scenes")):
+        code, out, err = call("table1", *arguments)
+        check(code == 2 and out == "" and expected in err.replace("'", ""), f"{arguments}: {code} {out} {err}")
+
+
 def test_wrong_arguments():
     for arguments, expected in ((["sheet", "--case", "elastic"], "belong to step"), ([], "expected"),
-                                (["steps"], "expected step"), (["step", "--case", "elastc"], "elastic"),
+                                (["steps"], "expected step"), (["--json", "table1"], "as its first argument"), (["step", "--case", "elastc"], "elastic"),
                                 (["step", "--precision", "f16"], "f32 or f64"), (["step", "--repeat", "0"], "whole number"),
                                 (["step", "--seconds", "x"], "a number"), (["step", "--particles", "3"], "whole number")):
         code, out, err = call(*arguments)

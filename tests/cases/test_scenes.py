@@ -448,6 +448,36 @@ def test_inversion():
         check(stuck["determinant_max"] < 1e-6, "without fibres a point stays a point")
 
 
+def mean_height(run, number, keep):
+    rest, now = frames.places(run, 0), frames.places(run, number)
+    heights = [now[i][1] - place[1] for i, place in rest.items() if keep(place)]
+    return sum(heights) / len(heights)
+
+
+def test_hanging_torus():
+    with Box() as box:
+        sunk = {}
+        for variant in ("inextensible", "elastic"):
+            run = box.run("hanging_torus", 8, 5000, variant=variant, density=5)
+            sunk[variant] = -mean_height(run, run["frames"], lambda place: place[1] < 0.1)
+        print("  the ring has sunk by:", {v: round(d, 4) for v, d in sunk.items()})
+        check(abs(sunk["inextensible"]) < 0.01, f"inextensible ropes of length 0.9 hold it: {sunk}")
+        check(sunk["elastic"] > 0.05, f"elastic ones give way: {sunk}")
+
+
+def test_locking():
+    with Box() as box:
+        sunk = {}
+        for variant in ("inextensible", "inextensible_perturbed", "elastic", "elastic_perturbed"):
+            run = box.run("locking", 24, 1500, variant=variant)
+            sunk[variant] = -mean_height(run, run["frames"], lambda place: place[0] > 0.4)
+        print("  the free end has sunk by:", {v: round(d, 4) for v, d in sunk.items()})
+        ratio = sunk["inextensible_perturbed"] / sunk["inextensible"]
+        locked = sunk["elastic_perturbed"] / sunk["elastic"]
+        check(abs(ratio - 1) < 0.05, f"perturbed inextensible fibres hang as parallel ones do: {ratio}")
+        check(locked < 0.9, f"perturbed elastic fibres lock: {locked}")
+
+
 def main():
     wanted = sys.argv[3:]
     for name, test in list(globals().items()):

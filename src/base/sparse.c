@@ -206,7 +206,7 @@ static status amg_apply(sparse_solver *s, const double *right, double *z, report
 
 status sparse_create(sparse_kind kind, const sparse_matrix *m, double work_limit, sparse_solver **out, report *r) {
     *out = NULL;
-    if (!sparse_available(kind)) return report_set(r, STATUS_SYSTEM, "this build lacks %s", sparse_package(kind));
+    if (!sparse_available(kind)) return report_set(r, STATUS_SYSTEM, "this build lacks the package %s, which the solver asked for needs", sparse_package(kind));
     sparse_solver *s = memory_allocate(sizeof *s);
     if (!s) return report_set(r, STATUS_SYSTEM, "out of memory for a solver");
     s->kind = kind;

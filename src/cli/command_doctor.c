@@ -1,6 +1,7 @@
 /* sunder doctor: what this machine and this build can do, and which package brings what is missing. */
 #include "cli/cli.h"
 
+#include "base/sparse.h"
 #include "base/json.h"
 #include "base/threads.h"
 #include "geom/tetrahedra.h"
@@ -57,6 +58,14 @@ static void add_libraries(doctor_report *d) {
 }
 
 /* Programs that commands may call, with the Debian package of each. */
+static void add_solvers(doctor_report *d) {
+    static const char *const names[SPARSE_KINDS] = {"cholmod", "hypre"}, *const uses[SPARSE_KINDS] = {"solver direct", "solver amg"};
+    for (int kind = 0; kind < SPARSE_KINDS; kind++) {
+        if (sparse_available((sparse_kind)kind)) add(d, true, names[kind], "found");
+        else add(d, true, names[kind], "not found (package %s: %s of inextensible fibres)", sparse_package((sparse_kind)kind), uses[kind]);
+    }
+}
+
 static void add_tools(doctor_report *d) {
     static const struct {
         const char *program, *package, *what;
@@ -98,6 +107,7 @@ static void examine(doctor_report *d) {
     add(d, true, "live view", "%s", screen ? "possible here" : why);
     add(d, true, "character set", "%s", nl_langinfo(CODESET));
     add_libraries(d);
+    add_solvers(d);
     add_tools(d);
     add_ledger(d);
 }

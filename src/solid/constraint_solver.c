@@ -107,9 +107,9 @@ status constraint_precondition(solid *s, real dt, report *r) {
     if (code == STATUS_OK) {
         shift_diagonal(&m);
         bool automatic = c->solver == CONSTRAINT_AUTO;
-        if (c->solver != CONSTRAINT_AMG && sparse_available(SPARSE_DIRECT))
+        if (c->solver == CONSTRAINT_DIRECT || (automatic && sparse_available(SPARSE_DIRECT)))
             code = sparse_create(SPARSE_DIRECT, &m, automatic ? WORK_LIMIT : 0, &c->preconditioner, r);
-        if (code == STATUS_OK && !c->preconditioner && c->solver != CONSTRAINT_DIRECT && sparse_available(SPARSE_AMG))
+        if (code == STATUS_OK && !c->preconditioner && (c->solver == CONSTRAINT_AMG || (automatic && sparse_available(SPARSE_AMG))))
             code = sparse_create(SPARSE_AMG, &m, 0, &c->preconditioner, r);
     }
     sparse_free(&m);

@@ -461,8 +461,8 @@ def test_hanging_torus():
             run = box.run("hanging_torus", 8, 5000, variant=variant, density=5)
             sunk[variant] = -mean_height(run, run["frames"], lambda place: place[1] < 0.1)
         print("  the ring has sunk by:", {v: round(d, 4) for v, d in sunk.items()})
-        check(abs(sunk["inextensible"]) < 0.01, f"inextensible ropes of length 0.9 hold it: {sunk}")
-        check(sunk["elastic"] > 0.05, f"elastic ones give way: {sunk}")
+        check(sunk["inextensible"] < 0.03, f"inextensible ropes of length 0.9 hold it, but for its own sagging between them: {sunk}")
+        check(sunk["elastic"] > 0.2, f"elastic ones give way: {sunk}")
 
 
 def test_locking():

@@ -142,6 +142,35 @@ SIMD_INLINE vec vec_floor(vec a) {
 #endif
 }
 
+/* One stage of the transposition: rows i and i + half exchange their off-diagonal blocks. */
+#define TRANSPOSE_STAGE(half, first_lanes, second_lanes)                                                               \
+    for (int i = 0; i < VEC_LANES; i++) {                                                                              \
+        if (i & (half)) continue;                                                                                      \
+        vec a = rows[i], b = rows[i + (half)];                                                                         \
+        rows[i] = __builtin_shufflevector(a, b, first_lanes);                                                          \
+        rows[i + (half)] = __builtin_shufflevector(a, b, second_lanes);                                                \
+    }
+#define LANES(...) __VA_ARGS__
+
+/* Transposes VEC_LANES vectors: lane j of row i becomes lane i of row j. */
+SIMD_INLINE void vec_transpose(vec rows[VEC_LANES]) {
+#if VEC_BYTES == 64 && SUNDER_PRECISION == 32
+    TRANSPOSE_STAGE(1, LANES(0, 16, 2, 18, 4, 20, 6, 22, 8, 24, 10, 26, 12, 28, 14, 30), LANES(1, 17, 3, 19, 5, 21, 7, 23, 9, 25, 11, 27, 13, 29, 15, 31))
+    TRANSPOSE_STAGE(2, LANES(0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29), LANES(2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31))
+    TRANSPOSE_STAGE(4, LANES(0, 1, 2, 3, 16, 17, 18, 19, 8, 9, 10, 11, 24, 25, 26, 27), LANES(4, 5, 6, 7, 20, 21, 22, 23, 12, 13, 14, 15, 28, 29, 30, 31))
+    TRANSPOSE_STAGE(8, LANES(0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23), LANES(8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31))
+#elif VEC_BYTES == 64 || (VEC_BYTES == 32 && SUNDER_PRECISION == 32)
+    TRANSPOSE_STAGE(1, LANES(0, 8, 2, 10, 4, 12, 6, 14), LANES(1, 9, 3, 11, 5, 13, 7, 15))
+    TRANSPOSE_STAGE(2, LANES(0, 1, 8, 9, 4, 5, 12, 13), LANES(2, 3, 10, 11, 6, 7, 14, 15))
+    TRANSPOSE_STAGE(4, LANES(0, 1, 2, 3, 8, 9, 10, 11), LANES(4, 5, 6, 7, 12, 13, 14, 15))
+#elif VEC_BYTES == 32 || SUNDER_PRECISION == 32
+    TRANSPOSE_STAGE(1, LANES(0, 4, 2, 6), LANES(1, 5, 3, 7))
+    TRANSPOSE_STAGE(2, LANES(0, 1, 4, 5), LANES(2, 3, 6, 7))
+#else
+    TRANSPOSE_STAGE(1, LANES(0, 2), LANES(1, 3))
+#endif
+}
+
 /* ---- rows: four nodes of four reals, for the transfers ----------------------------------------------------------- */
 
 enum { ROW = 16, ROW_PARTS = ROW / VEC_LANES };

@@ -14,6 +14,23 @@ enum {
     G2P_WX = 0, G2P_WY = 4, G2P_WZ = 8, G2P_OFFSET = 12, G2P_NODE = 15, G2P_OUT = 16,
 };
 
+/* Writes columns[0 … count) of a part's lanes into slots from `slot` on of their records; count is a multiple of VEC_LANES. The columns are
+ * lost. */
+SIMD_INLINE void records_store(real *records, int first, int slot, vec *columns, int count) {
+    for (int group = 0; group < count; group += VEC_LANES) {
+        vec_transpose(columns + group);
+        for (int lane = 0; lane < VEC_LANES; lane++) vec_store(records + (first + lane) * RECORD + slot + group, columns[group + lane]);
+    }
+}
+
+/* The way back. */
+SIMD_INLINE void records_load(const real *records, int first, int slot, vec *columns, int count) {
+    for (int group = 0; group < count; group += VEC_LANES) {
+        for (int lane = 0; lane < VEC_LANES; lane++) columns[group + lane] = vec_load(records + (first + lane) * RECORD + slot + group);
+        vec_transpose(columns + group);
+    }
+}
+
 /* Writes lanes of `value` into column `slot` of the records of a part. */
 SIMD_INLINE void record_put(real *records, int first, int slot, vec value) {
     for (int lane = 0; lane < VEC_LANES; lane++) records[(first + lane) * RECORD + slot] = value[lane];

@@ -41,26 +41,14 @@ SIMD_INLINE void momentum_records(const tile_work *w, kernel_kind kernel, real d
             vec3v v = vec3v_load(&s->fields[FIELD_VELOCITY], pack, part);
             kernel_place at = kernel_locate(kernel, vec3v_load(&s->fields[FIELD_POSITION], pack, part));
             vec3v slope = mat3v_times(Q, at.u);
-            real *records = w->scratch->records;
-            record_put(records, first, P2G_BASE + 0, vec_fma(mass, v.x, -slope.x));
-            record_put(records, first, P2G_BASE + 1, vec_fma(mass, v.y, -slope.y));
-            record_put(records, first, P2G_BASE + 2, vec_fma(mass, v.z, -slope.z));
-            record_put(records, first, P2G_BASE + 3, mass);
-            const vec columns[3][3] = {{Q.xx, Q.yx, Q.zx}, {Q.xy, Q.yy, Q.zy}, {Q.xz, Q.yz, Q.zz}};
-            for (int axis = 0; axis < 3; axis++) {
-                for (int c = 0; c < 3; c++) record_put(records, first, P2G_X + 4 * axis + c, columns[axis][c]);
-                record_put(records, first, P2G_X + 4 * axis + 3, vec_all(0));
-            }
-            vec wx[4], wy[4], wz[4];
-            kernel_weights(kernel, at.u.x, wx);
-            kernel_weights(kernel, at.u.y, wy);
-            kernel_weights(kernel, at.u.z, wz);
-            for (int n = 0; n < 4; n++) {
-                record_put(records, first, P2G_WX + n, wx[n]);
-                record_put(records, first, P2G_WY + n, wy[n]);
-                record_put(records, first, P2G_WZ + n, wz[n]);
-            }
-            record_put(records, first, P2G_NODE, window_index(at.base));
+            const vec zero = vec_all(0);
+            vec columns[RECORD] = {vec_fma(mass, v.x, -slope.x), vec_fma(mass, v.y, -slope.y), vec_fma(mass, v.z, -slope.z), mass,
+                                   Q.xx, Q.yx, Q.zx, zero, Q.xy, Q.yy, Q.zy, zero, Q.xz, Q.yz, Q.zz, zero};
+            kernel_weights(kernel, at.u.x, columns + P2G_WX);
+            kernel_weights(kernel, at.u.y, columns + P2G_WY);
+            kernel_weights(kernel, at.u.z, columns + P2G_WZ);
+            columns[P2G_NODE] = window_index(at.base);
+            records_store(w->scratch->records, first, 0, columns, RECORD);
         }
 }
 
@@ -79,17 +67,13 @@ SIMD_INLINE void scatter_damage(const tile_work *w, kernel_kind kernel, int node
             int32_t pack = w->tile->first_pack + k;
             int first = k * PACK + part * VEC_LANES;
             kernel_place at = kernel_locate(kernel, vec3v_load(&s->fields[FIELD_POSITION], pack, part));
-            vec weight[3][4];
-            kernel_weights(kernel, at.u.x, weight[0]);
-            kernel_weights(kernel, at.u.y, weight[1]);
-            kernel_weights(kernel, at.u.z, weight[2]);
-            for (int n = 0; n < 4; n++) {
-                record_put(records, first, P2G_WX + n, weight[0][n]);
-                record_put(records, first, P2G_WY + n, weight[1][n]);
-                record_put(records, first, P2G_WZ + n, weight[2][n]);
-            }
-            record_put(records, first, P2G_NODE, window_index(at.base));
-            record_put(records, first, P2G_DAMAGE, vec_load(field_at(&s->fields[s->damage_field], pack, 0, part)));
+            vec columns[RECORD - P2G_WZ] = {vec_all(0)};
+            kernel_weights(kernel, at.u.x, columns + P2G_WX - P2G_WZ);
+            kernel_weights(kernel, at.u.y, columns + P2G_WY - P2G_WZ);
+            kernel_weights(kernel, at.u.z, columns);
+            columns[P2G_NODE - P2G_WZ] = window_index(at.base);
+            columns[P2G_DAMAGE - P2G_WZ] = vec_load(field_at(&s->fields[s->damage_field], pack, 0, part));
+            records_store(records, first, P2G_WZ, columns, RECORD - P2G_WZ);
         }
     for (int p = 0; p < w->tile->count; p++) {
         const real *r = records + p * RECORD;
@@ -171,19 +155,13 @@ SIMD_INLINE void gather_weights(const tile_work *w, kernel_kind kernel) {
         for (int part = 0; part < PACK_PARTS; part++) {
             int first = k * PACK + part * VEC_LANES;
             kernel_place at = kernel_locate(kernel, vec3v_load(&w->state->fields[FIELD_POSITION], w->tile->first_pack + k, part));
-            vec weight[3][4];
-            kernel_weights(kernel, at.u.x, weight[0]);
-            kernel_weights(kernel, at.u.y, weight[1]);
-            kernel_weights(kernel, at.u.z, weight[2]);
-            for (int n = 0; n < 4; n++) {
-                record_put(records, first, G2P_WX + n, weight[0][n]);
-                record_put(records, first, G2P_WY + n, weight[1][n]);
-                record_put(records, first, G2P_WZ + n, weight[2][n]);
-            }
-            record_put(records, first, G2P_OFFSET + 0, at.u.x);
-            record_put(records, first, G2P_OFFSET + 1, at.u.y);
-            record_put(records, first, G2P_OFFSET + 2, at.u.z);
-            record_put(records, first, G2P_NODE, window_index(at.base));
+            vec columns[G2P_OUT];
+            kernel_weights(kernel, at.u.x, columns + G2P_WX);
+            kernel_weights(kernel, at.u.y, columns + G2P_WY);
+            kernel_weights(kernel, at.u.z, columns + G2P_WZ);
+            columns[G2P_OFFSET] = at.u.x, columns[G2P_OFFSET + 1] = at.u.y, columns[G2P_OFFSET + 2] = at.u.z;
+            columns[G2P_NODE] = window_index(at.base);
+            records_store(records, first, 0, columns, G2P_OUT);
         }
 }
 
@@ -196,10 +174,11 @@ SIMD_INLINE void gather_tile(const tile_work *w, kernel_kind kernel, const node_
 
 SIMD_INLINE void keep_old_velocity(const tile_work *w) {
     for (int k = 0; k < w->tile->pack_count; k++)
-        for (int part = 0; part < PACK_PARTS; part++)
-            for (int c = 0; c < 3; c++)
-                vec_store(scratch_at(w->scratch->old_velocity, 3, k, c, part),
-                          record_get(w->scratch->records, k * PACK + part * VEC_LANES, G2P_OUT + c));
+        for (int part = 0; part < PACK_PARTS; part++) {
+            vec out[RECORD - G2P_OUT];
+            records_load(w->scratch->records, k * PACK + part * VEC_LANES, G2P_OUT, out, RECORD - G2P_OUT);
+            for (int c = 0; c < 3; c++) vec_store(scratch_at(w->scratch->old_velocity, 3, k, c, part), out[c]);
+        }
 }
 
 /* FLIP: the particle's own velocity plus what the grid gained, blended with the grid's by the ratio. */
@@ -288,13 +267,11 @@ SIMD_INLINE void advance_particles(const tile_work *w, kernel_kind kernel) {
             int32_t pack = w->tile->first_pack + k;
             int first = k * PACK + part * VEC_LANES;
             const real *records = w->scratch->records;
-            vec out[4][3];
-            for (int column = 0; column < 4; column++)
-                for (int c = 0; c < 3; c++) out[column][c] = record_get(records, first, G2P_OUT + 4 * column + c);
-            vec3v v = {out[0][0], out[0][1], out[0][2]};
+            vec out[RECORD - G2P_OUT]; /* velocity, then the columns of Σ w v (x_i − x_p)ᵀ, each with one to spare */
+            records_load(records, first, G2P_OUT, out, RECORD - G2P_OUT);
+            vec3v v = {out[0], out[1], out[2]};
             vec h = vec_all(inverse_d);
-            mat3v L = {h * out[1][0], h * out[2][0], h * out[3][0], h * out[1][1], h * out[2][1],
-                       h * out[3][1], h * out[1][2], h * out[2][2], h * out[3][2]};
+            mat3v L = {h * out[4], h * out[8], h * out[12], h * out[5], h * out[9], h * out[13], h * out[6], h * out[10], h * out[14]};
             mat3v F = advance_deformation(L, w->dt, mat3v_load(&s->fields[FIELD_DEFORMATION], pack, part));
             vec3v step = {per_cell * v.x, per_cell * v.y, per_cell * v.z};
             vec3v x = vec3v_load(&s->fields[FIELD_POSITION], pack, part);

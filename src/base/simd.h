@@ -171,6 +171,19 @@ SIMD_INLINE void vec_transpose(vec rows[VEC_LANES]) {
 #endif
 }
 
+/* Four and eight reals, whatever the width of vec. */
+typedef real vec4 __attribute__((vector_size(4 * sizeof(real))));
+typedef real vec8 __attribute__((vector_size(8 * sizeof(real))));
+
+/* Through pointers: wider vectors than the instruction set has are no values to return. */
+SIMD_INLINE void vec4_load(vec4 *to, const real *from) {
+    memcpy(to, from, sizeof *to);
+}
+
+SIMD_INLINE void vec8_load(vec8 *to, const real *from) {
+    memcpy(to, from, sizeof *to);
+}
+
 /* ---- rows: four nodes of four reals, for the transfers ----------------------------------------------------------- */
 
 enum { ROW = 16, ROW_PARTS = ROW / VEC_LANES };

@@ -58,37 +58,54 @@ SIMD_INLINE void scatter_momentum(const tile_work *w, int nodes, real *window) {
     for (int p = 0; p < w->tile->count;) p = scatter_run(w->scratch->records, p, w->tile->count, nodes, node_offset, window);
 }
 
-/* Σ w d and Σ w, in two planes of the damage window. */
-SIMD_INLINE void scatter_damage(const tile_work *w, kernel_kind kernel, int nodes, real *window) {
+/* Slots of a particle's record for the damage channel: four w_z d beside four w_z; the other weights and curvatures; the first node. */
+enum {
+    DAMAGE_ROW = 0, DAMAGE_WX = 8, DAMAGE_WY = 12, DAMAGE_RECORD = 16,
+    CURVE_WX = 0, CURVE_WY = 4, CURVE_WZ = 8, CURVE_CX = 12, CURVE_CY = 16, CURVE_CZ = 20, CURVE_RECORD = 32, DAMAGE_NODE_AT = 24,
+};
+
+SIMD_INLINE void damage_records(const tile_work *w, kernel_kind kernel) {
     const solid *s = w->state;
-    real *records = w->scratch->records;
     for (int k = 0; k < w->tile->pack_count; k++)
         for (int part = 0; part < PACK_PARTS; part++) {
             int32_t pack = w->tile->first_pack + k;
             int first = k * PACK + part * VEC_LANES;
             kernel_place at = kernel_locate(kernel, vec3v_load(&s->fields[FIELD_POSITION], pack, part));
-            vec columns[RECORD - P2G_WZ] = {vec_all(0)};
-            kernel_weights(kernel, at.u.x, columns + P2G_WX - P2G_WZ);
-            kernel_weights(kernel, at.u.y, columns + P2G_WY - P2G_WZ);
-            kernel_weights(kernel, at.u.z, columns);
-            columns[P2G_NODE - P2G_WZ] = window_index(at.base);
-            columns[P2G_DAMAGE - P2G_WZ] = vec_load(field_at(&s->fields[s->damage_field], pack, 0, part));
-            records_store(records, first, P2G_WZ, columns, RECORD - P2G_WZ);
+            vec damage = vec_load(field_at(&s->fields[s->damage_field], pack, 0, part)), columns[DAMAGE_RECORD];
+            kernel_weights(kernel, at.u.z, columns + DAMAGE_ROW + 4);
+            for (int n = 0; n < 4; n++) columns[DAMAGE_ROW + n] = columns[DAMAGE_ROW + 4 + n] * damage;
+            kernel_weights(kernel, at.u.x, columns + DAMAGE_WX);
+            kernel_weights(kernel, at.u.y, columns + DAMAGE_WY);
+            records_store(w->scratch->records, first, 0, columns, DAMAGE_RECORD);
+            record_put(w->scratch->records, first, DAMAGE_NODE_AT, window_index(at.base));
         }
-    for (int p = 0; p < w->tile->count; p++) {
+}
+
+/* Σ w d and Σ w of particles that share a first node, in two planes of the damage window. */
+SIMD_INLINE int scatter_damage_run(const real *records, int p, int count, int nodes, real *window) {
+    real node = records[p * RECORD + DAMAGE_NODE_AT], *first = window + (int)node;
+    vec8 sum[16] = {{0}};
+    for (; p < count && records[p * RECORD + DAMAGE_NODE_AT] == node; p++) {
         const real *r = records + p * RECORD;
-        real *first = window + (int)r[P2G_NODE], damage = r[P2G_DAMAGE];
-        for (int i = 0; i < nodes; i++)
-            for (int j = 0; j < nodes; j++) {
-                real *sums = first + i * STRIDE_X + j * STRIDE_Y, *weights = sums + WINDOW_NODES;
-                real wxy = r[P2G_WX + i] * r[P2G_WY + j];
-                for (int n = 0; n < 4; n++) {
-                    real weight = wxy * r[P2G_WZ + n];
-                    sums[n] += weight * damage;
-                    weights[n] += weight;
-                }
-            }
+        vec8 row;
+        vec8_load(&row, r + DAMAGE_ROW);
+        for (int i = 0; i < nodes; i++) {
+            vec8 here = row * r[DAMAGE_WX + i];
+            for (int j = 0; j < nodes; j++) sum[i * nodes + j] += here * r[DAMAGE_WY + j];
+        }
     }
+    for (int i = 0; i < nodes; i++)
+        for (int j = 0; j < nodes; j++) {
+            real *sums = first + i * STRIDE_X + j * STRIDE_Y, *weights = sums + WINDOW_NODES;
+            for (int n = 0; n < 4; n++) sums[n] += sum[i * nodes + j][n];
+            for (int n = 0; n < 4; n++) weights[n] += sum[i * nodes + j][4 + n];
+        }
+    return p;
+}
+
+SIMD_INLINE void scatter_damage(const tile_work *w, kernel_kind kernel, int nodes, real *window) {
+    damage_records(w, kernel);
+    for (int p = 0; p < w->tile->count;) p = scatter_damage_run(w->scratch->records, p, w->tile->count, nodes, window);
 }
 
 static void call_stage(tile_work *w, size_t stage_offset) {
@@ -190,38 +207,43 @@ SIMD_INLINE vec3v flip_velocity(const tile_work *w, int k, int part, vec3v grid)
     return (vec3v){grid.x + ratio * (own.x - old[0]), grid.y + ratio * (own.y - old[1]), grid.z + ratio * (own.z - old[2])};
 }
 
-/* Δd at each particle from the nodal damage: N'' of one axis times N of the others. */
-SIMD_INLINE void gather_laplacian(const tile_work *w, kernel_kind kernel, int nodes, const real *window) {
-    real scale = (real)(1 / (w->state->definition.dx * w->state->definition.dx));
+SIMD_INLINE void curve_records(const tile_work *w, kernel_kind kernel) {
     for (int k = 0; k < w->tile->pack_count; k++)
         for (int part = 0; part < PACK_PARTS; part++) {
+            int first = k * PACK + part * VEC_LANES;
             kernel_place at = kernel_locate(kernel, vec3v_load(&w->state->fields[FIELD_POSITION], w->tile->first_pack + k, part));
-            vec u[3] = {at.u.x, at.u.y, at.u.z}, weight[3][4], curve[3][4], node = window_index(at.base), result = vec_all(0);
+            vec u[3] = {at.u.x, at.u.y, at.u.z}, columns[CURVE_RECORD] = {vec_all(0)};
             for (int axis = 0; axis < 3; axis++) {
-                kernel_weights(kernel, u[axis], weight[axis]);
-                if (kernel == KERNEL_QUADRATIC) quadratic_curvatures(curve[axis]);
-                else cubic_curvatures(u[axis], curve[axis]);
+                kernel_weights(kernel, u[axis], columns + CURVE_WX + 4 * axis);
+                if (kernel == KERNEL_QUADRATIC) quadratic_curvatures(columns + CURVE_CX + 4 * axis);
+                else cubic_curvatures(u[axis], columns + CURVE_CX + 4 * axis);
             }
-            for (int lane = 0; lane < VEC_LANES; lane++) {
-                int p = k * PACK + part * VEC_LANES + lane;
-                if (p >= w->tile->count) break;
-                const real *first = window + (int)node[lane];
-                real total = 0;
-                for (int i = 0; i < nodes; i++)
-                    for (int j = 0; j < nodes; j++) {
-                        const real *d = first + i * STRIDE_X + j * STRIDE_Y;
-                        real plain = 0, curved = 0;
-                        for (int n = 0; n < nodes; n++) {
-                            plain += weight[2][n][lane] * d[n];
-                            curved += curve[2][n][lane] * d[n];
-                        }
-                        real wx = weight[0][i][lane], wy = weight[1][j][lane];
-                        total += wx * wy * curved + (curve[0][i][lane] * wy + wx * curve[1][j][lane]) * plain;
-                    }
-                result[lane] = total * scale;
-            }
-            vec_store(scratch_at(w->scratch->laplacian, 1, k, 0, part), result);
+            columns[DAMAGE_NODE_AT] = window_index(at.base);
+            records_store(w->scratch->records, first, 0, columns, CURVE_RECORD);
         }
+}
+
+/* Δd at each particle from the nodal damage: N'' of one axis times N of the others, rows along z summed first. */
+SIMD_INLINE void gather_laplacian(const tile_work *w, kernel_kind kernel, int nodes, const real *window) {
+    real scale = (real)(1 / (w->state->definition.dx * w->state->definition.dx));
+    curve_records(w, kernel);
+    for (int p = 0; p < w->tile->count; p++) {
+        const real *r = w->scratch->records + p * RECORD, *first = window + (int)r[DAMAGE_NODE_AT];
+        vec4 plain = {0}, curved = {0}; /* what multiplies N'' and N along z */
+        for (int i = 0; i < nodes; i++)
+            for (int j = 0; j < nodes; j++) {
+                vec4 d;
+                vec4_load(&d, first + i * STRIDE_X + j * STRIDE_Y);
+                plain += d * (r[CURVE_WX + i] * r[CURVE_WY + j]);
+                curved += d * (r[CURVE_CX + i] * r[CURVE_WY + j] + r[CURVE_WX + i] * r[CURVE_CY + j]);
+            }
+        vec4 bend, weight;
+        vec4_load(&bend, r + CURVE_CZ);
+        vec4_load(&weight, r + CURVE_WZ);
+        vec4 sum = plain * bend + curved * weight;
+        w->scratch->laplacian[p] = ((sum[0] + sum[1]) + (sum[2] + sum[3])) * scale;
+    }
+    for (int p = w->tile->count; p < w->tile->pack_count * PACK; p++) w->scratch->laplacian[p] = 0;
 }
 
 /* What of L the particle carries on as C (METHOD.md §3): all of it, its skew part and a share of the rest, or nothing. */

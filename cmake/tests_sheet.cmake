@@ -1,8 +1,6 @@
 # The verification of the sheet engine.
 foreach(name sheet_forces sheet_elastic sheet_diffusion sheet_fracture sheet_dynamics sheet_determinism sheet_sph)
-  if(EXISTS ${CMAKE_SOURCE_DIR}/tests/verify/test_${name}.c)
-    sunder_test(${name} ${CMAKE_SOURCE_DIR}/tests/verify/test_${name}.c sunder_sheet)
-  endif()
+  sunder_test(${name} ${CMAKE_SOURCE_DIR}/tests/verify/test_${name}.c sunder_sheet)
 endforeach()
 
 add_test(NAME sheet_scenes COMMAND python3 ${CMAKE_SOURCE_DIR}/tests/cases/test_sheet_scenes.py $<TARGET_FILE:sunder> ${CMAKE_SOURCE_DIR})

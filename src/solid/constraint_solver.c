@@ -14,10 +14,8 @@ enum {
 /* Multiplications that a factorisation may take: some seconds. */
 static const double WORK_LIMIT = 2e10;
 
-/* The matrix is nearly singular: tensions that alternate from cell to cell pull at nothing, and cells among held nodes have no row at
- * all. Its diagonal grows by this share of itself and of the largest, so that the preconditioner does not answer them with
- * noise. */
-static const double SHIFT = 1e-9, SHIFT_OF_LARGEST = 1e-9;
+/* Cells among held nodes have no row: the diagonal grows by this share of the largest, so that the matrix can be factored. */
+static const double SHIFT = 1e-9;
 
 bool constraint_is_slow(const solid *s, int since, int built) {
     const fibre_constraint *c = &s->constraint;
@@ -69,10 +67,9 @@ static status number_unknowns(solid *s, report *r) {
     return STATUS_OK;
 }
 
-status constraint_map(solid *s, report *r) {
-    (void)r;
+void constraint_map(solid *s) {
     fibre_constraint *c = &s->constraint;
-    if (c->mapped || !c->preconditioner) return STATUS_OK;
+    if (c->mapped || !c->preconditioner) return;
     for (int64_t i = 0; i < (int64_t)s->slot_count * BLOCK_NODES; i++) c->number[i] = -1;
     for (int32_t i = 0; i < c->unknowns; i++) {
         int32_t block[3], node = 0;
@@ -84,7 +81,6 @@ status constraint_map(solid *s, report *r) {
         if (slot >= 0) c->number[(int64_t)slot * BLOCK_NODES + node] = i;
     }
     c->mapped = true;
-    return STATUS_OK;
 }
 
 static void shift_diagonal(sparse_matrix *m) {
@@ -94,7 +90,7 @@ static void shift_diagonal(sparse_matrix *m) {
             for (int32_t e = m->start[column]; e < m->start[column + 1]; e++) {
                 if (m->row[e] != column) continue;
                 if (pass == 0) largest = fmax(largest, m->value[e]);
-                else m->value[e] += SHIFT * m->value[e] + SHIFT_OF_LARGEST * largest;
+                else m->value[e] += SHIFT * largest;
             }
 }
 

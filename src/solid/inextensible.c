@@ -27,11 +27,10 @@ enum { TENSION, WEIGHT, RELAXATION, STRAIN, RESIDUAL, PRECONDITIONER, SEARCH, IM
 enum { ITERATION_LIMIT = 2000, SET_ROUNDS = 4 };
 
 /* Tensions that alternate from cell to cell pull at nothing: left alone they grow without bound, keep conjugate gradients busy and
- * shorten the step. This share of the diagonal damps them; what it lets through of the others, the correction below takes back.
- * (A rope under 1000 times Fig. 21's load: 1e-6 diverges, 1e-4 keeps its length to 5e-4, 1e-3 to 7e-3.) */
+ * shorten the step. This share of the diagonal damps them; what it lets through of the others, the correction below takes back. */
 #define REGULARISATION ((real)5e-5)
 
-/* A fibre's stretch is taken back within half the time that the matrix needs to carry a wave over a cell, so that what tolerance and time
+/* A fibre's stretch is taken back within a fraction of the time that the matrix needs to carry a wave over a cell (`recovery`), so that what tolerance and time
  * steps let through does not add up; at most this share in one step, and beyond the most that is corrected at once it is pulled back gently. (A
  * share of each step alone runs away: tension shortens the step, which raises the tension that a share asks for.) It is the cells'
  * mean that is taken back: what single particles stretch beside it is in nobody's power, and asking for it drives tension
@@ -176,17 +175,15 @@ SIMD_INLINE void spread_block(pass_context *c, int32_t index, int worker, kernel
         const vec a[3] = {l.a.x, l.a.y, l.a.z};
         const vec u[3] = {l.at.u.x, l.at.u.y, l.at.u.z};
         vec along = vec_fma(a[0], u[0], vec_fma(a[1], u[1], a[2] * u[2]));
-        vec weight[3][4];
+        vec columns[RECORD] = {vec_all(0)};
         static const int weight_slot[3] = {P2G_WX, P2G_WY, P2G_WZ};
         for (int axis = 0; axis < 3; axis++) {
-            kernel_weights(kernel, u[axis], weight[axis]);
-            for (int n = 0; n < 4; n++) record_put(records, first, weight_slot[axis] + n, weight[axis][n]);
-            record_put(records, first, P2G_BASE + axis, -(q * a[axis] * along));
-            for (int column = 0; column < 3; column++) record_put(records, first, P2G_X + 4 * column + axis, q * a[axis] * a[column]);
-            record_put(records, first, P2G_X + 4 * axis + 3, vec_all(0));
+            kernel_weights(kernel, u[axis], columns + weight_slot[axis]);
+            columns[P2G_BASE + axis] = -(q * a[axis] * along);
+            for (int column = 0; column < 3; column++) columns[P2G_X + 4 * column + axis] = q * a[axis] * a[column];
         }
-        record_put(records, first, P2G_BASE + 3, vec_all(0));
-        record_put(records, first, P2G_NODE, window_index(l.at.base));
+        columns[P2G_NODE] = window_index(l.at.base);
+        records_store(records, first, 0, columns, RECORD);
         if (k + 1 == t->pack_count && part + 1 == PACK_PARTS)
             for (int p = 0; p < t->count;) p = scatter_run(records, p, t->count, nodes, node_offset, own->window);
     })
@@ -196,10 +193,11 @@ SIMD_INLINE void spread_block(pass_context *c, int32_t index, int worker, kernel
 /* a · (Σ_i w_i v_i (x_i − x_p)ᵀ) a of the lanes of one part, from gathered records. */
 SIMD_INLINE vec stretching(const fibre_lanes *l, const real *records, int first) {
     const vec a[3] = {l->a.x, l->a.y, l->a.z};
-    vec rate = vec_all(0);
+    vec rate = vec_all(0), out[RECORD - G2P_OUT];
+    records_load(records, first, G2P_OUT, out, RECORD - G2P_OUT);
     for (int column = 0; column < 3; column++) {
         vec along = vec_all(0);
-        for (int c = 0; c < 3; c++) along = vec_fma(a[c], record_get(records, first, G2P_OUT + 4 + 4 * column + c), along);
+        for (int c = 0; c < 3; c++) along = vec_fma(a[c], out[4 + 4 * column + c], along);
         rate = vec_fma(along, a[column], rate);
     }
     return rate;
@@ -209,13 +207,13 @@ SIMD_INLINE void gather_records(real *records, int first, int lanes, const fibre
                                 const real *window) {
     const vec u[3] = {l->at.u.x, l->at.u.y, l->at.u.z};
     static const int weight_slot[3] = {G2P_WX, G2P_WY, G2P_WZ};
-    vec weight[4];
+    vec columns[G2P_OUT];
     for (int axis = 0; axis < 3; axis++) {
-        kernel_weights(kernel, u[axis], weight);
-        for (int n = 0; n < 4; n++) record_put(records, first, weight_slot[axis] + n, weight[n]);
-        record_put(records, first, G2P_OFFSET + axis, u[axis]);
+        kernel_weights(kernel, u[axis], columns + weight_slot[axis]);
+        columns[G2P_OFFSET + axis] = u[axis];
     }
-    record_put(records, first, G2P_NODE, window_index(l->at.base));
+    columns[G2P_NODE] = window_index(l->at.base);
+    records_store(records, first, 0, columns, G2P_OUT);
     for (int lane = 0; lane < lanes; lane++)
         gather_particle(records + (first + lane) * RECORD, kernel == KERNEL_QUADRATIC ? 3 : 4, node_offset, window);
     for (int lane = lanes; lane < VEC_LANES; lane++) memset(records + (first + lane) * RECORD + G2P_OUT, 0, 16 * sizeof(real));
@@ -641,7 +639,8 @@ static status precondition(solid *s, slot_context *c, double *rho, report *r) {
 static status iterate(solid *s, slot_context *c, report *r) {
     double enough, rho = 0, next;
     double square = begin(s, c, &enough).second;
-    status code = constraint_map(s, r);
+    status code = STATUS_OK;
+    constraint_map(s);
     bool fresh = true; /* p starts from z */
     for (int i = 0, since = 0, built = 0; code == STATUS_OK && square > enough && i < ITERATION_LIMIT; i++, since++) {
         if (!isfinite(square))

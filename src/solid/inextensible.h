@@ -22,7 +22,7 @@ bool constraint_is_slow(const solid *s, int since, int built);
 /* Makes one from the operator as it is. It serves the steps that follow, too. */
 status constraint_precondition(solid *s, real dt, report *r);
 /* Finds its unknowns again after the grid was built anew. */
-status constraint_map(solid *s, report *r);
+void constraint_map(solid *s);
 /* Drops it; a frame starts without, so that a resumed run has the same bits. */
 void constraint_forget(solid *s);
 void constraint_begin_frame(solid *s);

@@ -36,12 +36,6 @@ SIMD_INLINE void record_put(real *records, int first, int slot, vec value) {
     for (int lane = 0; lane < VEC_LANES; lane++) records[(first + lane) * RECORD + slot] = value[lane];
 }
 
-SIMD_INLINE vec record_get(const real *records, int first, int slot) {
-    vec value;
-    for (int lane = 0; lane < VEC_LANES; lane++) value[lane] = records[(first + lane) * RECORD + slot];
-    return value;
-}
-
 /* Adds the contributions of particles that share a first node to the window: accumulated in registers, stored once. */
 SIMD_INLINE int scatter_run(const real *records, int p, int count, int nodes, const node_row node_offset, real *window) {
     real node = records[p * RECORD + P2G_NODE];

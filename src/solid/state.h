@@ -105,7 +105,7 @@ typedef struct fibre_constraint {
     real relaxation[SOLID_MATERIALS];
     real recovery[SOLID_MATERIALS]; /* rate at which stretch is taken back, 1/time */
     double tolerance;
-    int solver; /* inextensible_solver: the most that the materials ask for */
+    int solver; /* constraint_solver: what the last of the materials asks for */
     int64_t solves, iterations, factorisations;
     struct sparse_solver *preconditioner; /* NULL: Jacobi's */
     bool refused;  /* no library is worth its work for now */

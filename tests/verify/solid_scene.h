@@ -29,16 +29,20 @@ static inline scene *test_scene(const shape *(*make)(arena *), double E, double 
     return s;
 }
 
-/* Switches an effect on and gives it a value by key. */
-static inline void test_set(scene *s, const char *effect_name, const char *key, double value) {
+/* Switches an effect of a material on and gives it a value by key. */
+static inline void test_set_material(scene *s, int material, const char *effect_name, const char *key, double value) {
     int count, e = effect_index(effect_name);
     const effect *table = effect_catalogue(&count)[e];
-    effect_values *v = &s->materials[0].effects[e];
+    effect_values *v = &s->materials[material].effects[e];
     v->on = true;
     if (!key) return;
     int p = effect_parameter(table, key);
     v->value[p][0] = value;
     v->given[p] = true;
+}
+
+static inline void test_set(scene *s, const char *effect_name, const char *key, double value) {
+    test_set_material(s, 0, effect_name, key, value);
 }
 
 static inline simulation *test_simulation(scene *s, int precision, const char *simd, int threads) {

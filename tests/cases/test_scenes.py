@@ -6,7 +6,9 @@ Each run has one thread: ctest runs tests side by side.
 Directions come from the gradient of damage at rest, as the summary's crack_normal does; here also for plates that are
 thinner than three cells, and in polar coordinates. Frames are read through the HDF5 library that the program itself uses.
 """
-import ctypes, glob, json, math, os, re, shutil, sqlite3, subprocess, sys, tempfile
+import glob, json, math, os, shutil, sqlite3, subprocess, sys, tempfile
+
+from frame_reader import FrameReader
 
 SUNDER, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 failures, checks = [], 0
@@ -20,32 +22,11 @@ def check(condition, text):
         print("  failed:", text)
 
 
-class Frames:
-    """Reads a run's frames; rest positions by particle id."""
-
-    def __init__(self):
-        listed = subprocess.run(["ldd", SUNDER], capture_output=True, text=True).stdout
-        self.h5 = ctypes.CDLL(re.search(r"=> (\S*libhdf5\S*)", listed).group(1))
-        self.h5.H5open()
-        whole = ctypes.c_int64
-        for name, result, arguments in (("H5Fopen", whole, [ctypes.c_char_p, ctypes.c_uint, whole]), ("H5Dopen2", whole, [whole, ctypes.c_char_p, whole]),
-                                        ("H5Dget_space", whole, [whole]), ("H5Sget_simple_extent_npoints", whole, [whole]),
-                                        ("H5Dread", ctypes.c_int, [whole] * 5 + [ctypes.c_void_p]), ("H5Dclose", ctypes.c_int, [whole]),
-                                        ("H5Sclose", ctypes.c_int, [whole]), ("H5Fclose", ctypes.c_int, [whole])):
-            function = getattr(self.h5, name)
-            function.restype, function.argtypes = result, arguments
-        self.double = whole.in_dll(self.h5, "H5T_NATIVE_DOUBLE_g").value
+class Frames(FrameReader):
+    """The particles of a run's frames; rest positions by particle id."""
 
     def read(self, run, frame, name):
-        h5 = self.h5
-        file = h5.H5Fopen(os.path.join(run["out"], "frames", f"{frame:06d}.hdf").encode(), 0, 0)
-        data = h5.H5Dopen2(file, f"/solid/{name}".encode(), 0)
-        space = h5.H5Dget_space(data)
-        values = (ctypes.c_double * h5.H5Sget_simple_extent_npoints(space))()
-        if min(file, data, space, h5.H5Dread(data, self.double, 0, 0, 0, values)) < 0:
-            raise OSError(f"{run['out']}: frame {frame}: {name}")
-        h5.H5Sclose(space), h5.H5Dclose(data), h5.H5Fclose(file)
-        return list(values)
+        return super().read(run["out"], frame, f"/solid/{name}")
 
     def places(self, run, frame):
         values = self.read(run, frame, "position")
@@ -92,7 +73,7 @@ class Box:
             return [v for v, in connection.execute("SELECT value FROM measures_view WHERE id = ? AND name = ? ORDER BY frame", (run["run_id"], name))]
 
 
-frames = Frames()
+frames = Frames(SUNDER)
 
 
 def between(a, b):

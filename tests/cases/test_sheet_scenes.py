@@ -4,7 +4,9 @@
 Usage: test_sheet_scenes.py SUNDER SOURCE_DIR [NAME...]   Each run works in a scratch folder and with a ledger of its own, in f64.
 Frames are read through the HDF5 library that the program itself uses. Bonds are told by their middles at rest.
 """
-import ctypes, json, math, os, re, shutil, subprocess, sys, tempfile
+import json, math, os, shutil, subprocess, sys, tempfile
+
+from frame_reader import FrameReader
 
 SUNDER, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 failures, checks = [], 0
@@ -18,33 +20,12 @@ def check(condition, text):
         print("  failed:", text)
 
 
-class Library:
-    def __init__(self):
-        listed = subprocess.run(["ldd", SUNDER], capture_output=True, text=True).stdout
-        self.h5 = ctypes.CDLL(re.search(r"=> (\S*libhdf5\S*)", listed).group(1))
-        self.h5.H5open()
-        whole = ctypes.c_int64
-        for name, result, arguments in (("H5Fopen", whole, [ctypes.c_char_p, ctypes.c_uint, whole]), ("H5Dopen2", whole, [whole, ctypes.c_char_p, whole]),
-                                        ("H5Dget_space", whole, [whole]), ("H5Sget_simple_extent_npoints", whole, [whole]),
-                                        ("H5Dread", ctypes.c_int, [whole] * 5 + [ctypes.c_void_p]), ("H5Dclose", ctypes.c_int, [whole]),
-                                        ("H5Sclose", ctypes.c_int, [whole]), ("H5Fclose", ctypes.c_int, [whole])):
-            function = getattr(self.h5, name)
-            function.restype, function.argtypes = result, arguments
-        self.double = whole.in_dll(self.h5, "H5T_NATIVE_DOUBLE_g").value
-
+class Bonds(FrameReader):
     def read(self, folder, frame, name):
-        h5 = self.h5
-        file = h5.H5Fopen(os.path.join(folder, "frames", f"{frame:06d}.hdf").encode(), 0, 0)
-        data = h5.H5Dopen2(file, f"/sheet/{name}".encode(), 0)
-        space = h5.H5Dget_space(data)
-        values = (ctypes.c_double * h5.H5Sget_simple_extent_npoints(space))()
-        if min(file, data, space, h5.H5Dread(data, self.double, 0, 0, 0, values)) < 0:
-            raise OSError(f"{folder}: frame {frame}: {name}")
-        h5.H5Sclose(space), h5.H5Dclose(data), h5.H5Fclose(file)
-        return list(values)
+        return super().read(folder, frame, f"/sheet/{name}")
 
 
-library = Library()
+library = Bonds(SUNDER)
 
 
 class Run:

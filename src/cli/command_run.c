@@ -5,21 +5,26 @@
 #include "session/session.h"
 #include "tui/tui.h"
 
+#include <errno.h>
 #include <getopt.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+enum { TURN_LIMIT = 256 };
+
 typedef struct run_options {
     cli_scene_options scene;
     session_options session;
     bool tui, json, quiet;
-    char command[1024];
+    char command[1024], branch[512];
+    int turn_count;
+    knob_turn turns[TURN_LIMIT];
 } run_options;
 
 enum { OPTION_SET = 256, OPTION_RECIPE, OPTION_FRAMES, OPTION_THREADS, OPTION_PRECISION, OPTION_OUT, OPTION_DB, OPTION_TUI,
-       OPTION_JSON, OPTION_QUIET, OPTION_RESUME, OPTION_SIMD, OPTION_CHECKPOINT_EVERY, OPTION_KEEP };
+       OPTION_JSON, OPTION_QUIET, OPTION_RESUME, OPTION_SIMD, OPTION_CHECKPOINT_EVERY, OPTION_KEEP, OPTION_TURN, OPTION_BRANCH };
 
 static const struct option long_options[] = {
     {"set", required_argument, NULL, OPTION_SET},
@@ -36,6 +41,8 @@ static const struct option long_options[] = {
     {"simd", required_argument, NULL, OPTION_SIMD},
     {"checkpoint-every", required_argument, NULL, OPTION_CHECKPOINT_EVERY},
     {"keep", required_argument, NULL, OPTION_KEEP},
+    {"turn", required_argument, NULL, OPTION_TURN},
+    {"branch", required_argument, NULL, OPTION_BRANCH},
     {NULL, 0, NULL, 0},
 };
 
@@ -54,6 +61,36 @@ static int parse_keep(run_options *o, const char *text) {
     }
     int code = cli_number("run", "--keep", text, 1, 1000000, &value);
     o->session.keep = (int)value;
+    return code;
+}
+
+/* FRAME:PATH=VALUE */
+static int parse_turn(run_options *o, const char *text) {
+    knob_turn *turn = &o->turns[o->turn_count];
+    char *end;
+    errno = 0;
+    long long frame = strtoll(text, &end, 10);
+    const char *path = end + 1, *equals = *end ? strchr(path, '=') : NULL;
+    if (end == text || *end != ':' || errno || frame < 0 || !equals || equals == path)
+        return cli_usage("run", "--turn %s: expected FRAME:PATH=VALUE, as in 24:tube.damage.eta=0.05", text);
+    if (o->turn_count == TURN_LIMIT) return cli_usage("run", "--turn: at most %d turns", TURN_LIMIT);
+    if (equals - path >= KNOB_PATH || strlen(equals + 1) >= KNOB_TEXT) return cli_usage("run", "--turn %s: too long a path or value", text);
+    *turn = (knob_turn){.frame = frame};
+    snprintf(turn->path, sizeof turn->path, "%.*s", (int)(equals - path), path);
+    snprintf(turn->value, sizeof turn->value, "%s", equals + 1);
+    o->turn_count++;
+    return 0;
+}
+
+/* RUN@FRAME */
+static int parse_branch(run_options *o, const char *text) {
+    const char *at = strrchr(text, '@');
+    long frame;
+    if (!at || at == text || (size_t)(at - text) >= sizeof o->branch) return cli_usage("run", "--branch %s: expected RUN@FRAME, as in last@48", text);
+    snprintf(o->branch, sizeof o->branch, "%.*s", (int)(at - text), text);
+    o->session.branch_of = o->branch;
+    int code = cli_number("run", "--branch", at + 1, 0, 1000000000, &frame);
+    o->session.branch_frame = frame;
     return code;
 }
 
@@ -88,6 +125,8 @@ static int parse_option(run_options *o, int option) {
         o->session.checkpoint_every = (int)value;
         break;
     case OPTION_KEEP: return parse_keep(o, optarg);
+    case OPTION_TURN: return parse_turn(o, optarg);
+    case OPTION_BRANCH: return parse_branch(o, optarg);
     default: return cli_usage("run", "wrong option");
     }
     return code;
@@ -104,9 +143,11 @@ static int parse(run_options *o, int count, char **arguments) {
     }
     if (optind < count) o->scene.scene = arguments[optind++];
     if (optind < count) return cli_usage("run", "one scene at a time, found '%s' too", arguments[optind]);
-    if (!o->scene.scene && !o->session.resume) return cli_usage("run", "expected a scene");
+    if (!o->scene.scene && !o->session.resume && !o->session.branch_of) return cli_usage("run", "expected a scene");
     o->session.scene_path = o->scene.scene ? o->scene.scene : "";
     o->session.command = o->command;
+    o->session.turns = o->turns;
+    o->session.turn_count = o->turn_count;
     o->session.script.recipe = o->scene.recipe;
     o->session.script.settings = o->scene.settings;
     o->session.script.setting_count = o->scene.setting_count;

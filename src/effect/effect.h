@@ -33,6 +33,7 @@ typedef struct parameter {
     double fallback[3];      /* the value when the scene says nothing */
     const char *const *choices; /* NULL-terminated, for PARAMETER_CHOICE */
     bool live;        /* may be turned while a run goes on (acts at the next frame) */
+    const char *why_not; /* of one that is not live: what makes it so, as in "the rest state is made with it" */
     bool logarithmic; /* a slider should step it by factors */
     bool required;    /* naming the effect without this key (or its twin) is an error */
     const char *twin; /* another key of the same effect that says the same thing: the one set last holds, both is an error */

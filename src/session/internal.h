@@ -23,6 +23,16 @@ typedef struct run_request {
     script_setting settings[SESSION_SETTINGS]; /* into setting_text */
 } run_request;
 
+/* Turns of knobs. `asked` and the lists are under the lock; the simulation's own values are touched by its thread alone. */
+typedef struct session_knobs_state {
+    pthread_mutex_t lock;
+    scene *asked;     /* values with everything that was asked for */
+    knob_turn *turns; /* [count] by frame: the first `acted` have acted, the others were known beforehand */
+    int count, acted, capacity;
+    knob_turn *queue; /* [queued] asked for by hand, for the next boundary */
+    int queued, queue_capacity, version;
+} session_knobs_state;
+
 struct session {
     session_options options;
     run_request request;
@@ -38,6 +48,8 @@ struct session {
     atomic_int stop, abandon, paused, steps_asked, ended;
     pthread_mutex_t lock; /* guards shown */
     session_snapshot shown;
+    session_knobs_state knobs;
+    atomic_llong pause_at; /* −1: none */
 
     simulation_measures measures;
     session_sample sample;
@@ -66,6 +78,12 @@ status publish_frame(session *s, report *r);
 
 /* summary.c */
 status summary_write(session *s, report *r);
+
+/* turns.c: from a scene, and turns known beforehand, checked one after the other. */
+status turns_begin(session *s, const knob_turn *turns, int count, report *r);
+/* Lets everything act that is due between this frame and the next. */
+status turns_act(session *s, report *r);
+void turns_free(session *s);
 
 /* loop.c */
 void *session_loop(void *argument);

@@ -104,6 +104,11 @@ static status settle_frame(session *s, double seconds, bool file, report *r) {
 /* While paused: waits for a step, an end of the pause, or a stop. True when a frame should be made. */
 static bool may_go_on(session *s) {
     bool told = false;
+    int64_t wanted = atomic_load(&s->pause_at);
+    if (wanted >= 0 && simulation_frame(s->simulation) >= wanted) {
+        atomic_store(&s->paused, 1);
+        atomic_store(&s->pause_at, -1);
+    }
     while (atomic_load(&s->paused) && !atomic_load(&s->stop) && !atomic_load(&s->abandon)) {
         if (atomic_load(&s->steps_asked) > 0) {
             atomic_fetch_sub(&s->steps_asked, 1);
@@ -124,6 +129,8 @@ static status run_frames(session *s, report *r) {
         if (!may_go_on(s))
             return report_set(r, STATUS_INTERRUPTED, "interrupted after frame %lld of %lld", (long long)simulation_frame(s->simulation),
                               (long long)s->target);
+        code = turns_act(s, r);
+        if (code != STATUS_OK) return code;
         double start = session_clock();
         code = simulation_advance(s->simulation, &s->abandon, r);
         double seconds = session_clock() - start;

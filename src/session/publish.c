@@ -18,6 +18,9 @@ void publish_start(session *s) {
             snprintf(p->variant, sizeof p->variant, "%.63s", s->scene->parameters[i].text);
     for (int e = 0; e < plan->effect_count && p->effect_count < SESSION_EFFECTS; e++)
         if (plan->mask >> e & 1) snprintf(p->effects[p->effect_count++], sizeof p->effects[0], "%s", plan->effects[e]->name);
+    snprintf(p->colour, sizeof p->colour, "%s", simulation_picture_field(s->simulation));
+    p->colour_maximum = p->scalar_maximum = 1;
+    p->pause_at = -1;
     p->threads = plan->threads;
     p->particles = plan->particles;
     p->frames = s->target;
@@ -35,6 +38,9 @@ static void refresh(session *s, session_state state) {
     p->wall = session_clock() - s->wall_start;
     p->step_wall = s->step_wall;
     p->unfinished = s->unfinished;
+    p->pause_at = atomic_load(&s->pause_at);
+    p->turn_count = s->knobs.acted;
+    p->knob_version = s->knobs.version;
 }
 
 void publish_state(session *s, session_state state) {
@@ -49,9 +55,9 @@ static status reserve_points(session_snapshot *p, int64_t count, report *r) {
     size_t n = (size_t)count;
     p->point_capacity = count;
     p->position = memory_allocate_array(n, 3 * sizeof *p->position);
-    p->damage = memory_allocate_array(n, sizeof *p->damage);
+    p->scalar = memory_allocate_array(n, sizeof *p->scalar);
     p->body = memory_allocate_array(n, sizeof *p->body);
-    if (p->position && p->damage && p->body) return STATUS_OK;
+    if (p->position && p->scalar && p->body) return STATUS_OK;
     session_snapshot_free(p);
     return report_set(r, STATUS_SYSTEM, "out of memory for the picture of %lld points", (long long)count);
 }
@@ -59,9 +65,9 @@ static status reserve_points(session_snapshot *p, int64_t count, report *r) {
 void session_snapshot_free(session_snapshot *p) {
     size_t n = (size_t)p->point_capacity;
     memory_free(p->position, n * 3 * sizeof *p->position);
-    memory_free(p->damage, n * sizeof *p->damage);
+    memory_free(p->scalar, n * sizeof *p->scalar);
     memory_free(p->body, n * sizeof *p->body);
-    p->position = p->damage = NULL;
+    p->position = p->scalar = NULL;
     p->body = NULL;
     p->point_capacity = p->point_count = 0;
 }
@@ -92,7 +98,7 @@ static void fill_points(session *s, const double *position, const double *damage
     const uint8_t *body = simulation_bodies(s->simulation);
     for (int64_t i = 0; i < p->point_count; i++) {
         for (int c = 0; c < 3; c++) p->position[3 * i + c] = (float)position[3 * i + c];
-        p->damage[i] = damage ? (float)damage[i] : 0;
+        p->scalar[i] = damage ? (float)damage[i] : 0;
         p->body[i] = body[i];
     }
     if (first) fill_bounds(p);
@@ -138,7 +144,7 @@ status publish_frame(session *s, report *r) {
 /* Copies arrays into the reader's own, which keep their capacity from poll to poll. */
 static bool copy_points(session_snapshot *to, const session_snapshot *from, session_snapshot kept) {
     to->position = kept.position;
-    to->damage = kept.damage;
+    to->scalar = kept.scalar;
     to->body = kept.body;
     to->point_capacity = kept.point_capacity;
     report r;
@@ -147,7 +153,7 @@ static bool copy_points(session_snapshot *to, const session_snapshot *from, sess
         return false;
     }
     memcpy(to->position, from->position, (size_t)from->point_count * 3 * sizeof *to->position);
-    memcpy(to->damage, from->damage, (size_t)from->point_count * sizeof *to->damage);
+    memcpy(to->scalar, from->scalar, (size_t)from->point_count * sizeof *to->scalar);
     memcpy(to->body, from->body, (size_t)from->point_count * sizeof *to->body);
     to->point_count = from->point_count;
     return true;
@@ -160,7 +166,7 @@ bool session_poll(session *s, session_snapshot *snapshot) {
         session_snapshot kept = *snapshot;
         *snapshot = s->shown;
         if (s->shown.point_count > 0) copy_points(snapshot, &s->shown, kept);
-        else snapshot->position = kept.position, snapshot->damage = kept.damage, snapshot->body = kept.body, snapshot->point_capacity = kept.point_capacity;
+        else snapshot->position = kept.position, snapshot->scalar = kept.scalar, snapshot->body = kept.body, snapshot->point_capacity = kept.point_capacity;
     }
     pthread_mutex_unlock(&s->lock);
     return fresh;

@@ -172,6 +172,7 @@ static status prepare(session *s, script_reports *reports) {
         if (code != STATUS_OK) return code; /* the script has filled in its reports */
         code = make_simulation(s, r);
     }
+    if (code == STATUS_OK) code = turns_begin(s, s->options.turns, s->options.turn_count, r);
     if (code == STATUS_OK && !s->ledger) code = open_ledger(s, r);
     if (code == STATUS_OK) code = s->options.resume ? restore(s, r) : begin(s, r);
     reports->count = code != STATUS_OK;
@@ -188,6 +189,8 @@ status session_start(const session_options *options, session **out, script_repor
     s->options = *options;
     s->wall_start = session_clock();
     pthread_mutex_init(&s->lock, NULL);
+    pthread_mutex_init(&s->knobs.lock, NULL);
+    atomic_store(&s->pause_at, -1);
     atomic_store(&s->paused, options->start_paused);
     status code = prepare(s, reports);
     if (code == STATUS_OK) {
@@ -213,6 +216,15 @@ void session_pause(session *s, bool paused) {
 
 void session_step_once(session *s) {
     atomic_fetch_add(&s->steps_asked, 1);
+}
+
+int session_checkpoints(session *s, int64_t *frames, int limit) {
+    return checkpoint_frames(s->folder, frames, limit);
+}
+
+void session_run_to(session *s, int64_t frame) {
+    atomic_store(&s->pause_at, frame);
+    atomic_store(&s->paused, 0);
 }
 
 void session_stop(session *s) {
@@ -250,6 +262,8 @@ void session_destroy(session *s) {
     if (s->ledger) ledger_close(s->ledger);
     session_snapshot_free(&s->shown);
     json_free(&s->summary);
+    turns_free(s);
+    pthread_mutex_destroy(&s->knobs.lock);
     pthread_mutex_destroy(&s->lock);
     memory_free(s, sizeof *s);
 }

@@ -7,13 +7,14 @@
 
 #include "base/status.h"
 #include "script/script.h"
+#include "sim/knobs.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
 typedef struct session session;
 
-enum { SESSION_BINS = 50, SESSION_HISTORY = 512, SESSION_EFFECTS = 16 };
+enum { SESSION_BINS = 50, SESSION_HISTORY = 512, SESSION_EFFECTS = 16, SESSION_EVENTS = 64, SESSION_STAGES = 32, SESSION_COLOURS = 24 };
 
 typedef struct session_options {
     script_options script;
@@ -28,6 +29,11 @@ typedef struct session_options {
     int64_t frames;       /* −1: the scene's */
     int checkpoint_every; /* frames; 0: none */
     int keep;             /* checkpoints kept; 0: all */
+    int64_t keep_bytes;   /* above 0 instead: a ring of checkpoints within so many bytes, dense where it is new, sparse where it is old, frame 0 always */
+    const char *branch_of; /* --branch: a run's id, its unique prefix or "last"; NULL for none */
+    int64_t branch_frame;
+    const knob_turn *turns; /* [turn_count], known beforehand: each acts at its frame. Words may be short as for --set; copied by session_start */
+    int turn_count;
     int deflate;          /* 0–9 */
     bool start_paused;
 } session_options;
@@ -52,6 +58,20 @@ typedef struct session_unfinished {
     double time, seconds;
 } session_unfinished;
 
+/* Something worth telling: "first_crack", "warning", "knob", "branch" … */
+typedef struct session_event {
+    int64_t frame;
+    char kind[16], text[176];
+} session_event;
+
+/* Where the time of steps goes: a stage of a step, or an effect's part in it. */
+typedef struct session_stage {
+    char name[48];   /* "sort", "p2g", "p2g fibres.stress" … */
+    double seconds;  /* since the session's start */
+    double share;    /* of the time of all steps */
+    bool part;       /* an effect's part of the stage above it */
+} session_stage;
+
 /* What a screen shows. Arrays have shape [particles][…], rows by id, and belong to the snapshot. */
 typedef struct session_snapshot {
     uint64_t version; /* grows with each publication */
@@ -71,9 +91,21 @@ typedef struct session_snapshot {
     session_sample history[SESSION_HISTORY];
     int64_t point_count, point_capacity;
     float *position;     /* [point_count][3] */
-    float *damage;       /* [point_count] */
+    float *scalar;       /* [point_count], the field `colour`, as it is */
     int32_t *body;       /* [point_count] */
     float bounds_minimum[3], bounds_maximum[3]; /* of the first frame: a steady camera */
+    char colour[32], colour_unit[48];           /* what `scalar` holds */
+    float scalar_minimum, scalar_maximum;       /* of this frame */
+    float colour_minimum, colour_maximum;       /* what colours should run over: 0 to 1 of damage, of others what was seen so far */
+    int64_t pause_at;      /* frame that session_run_to asked for, −1: none */
+    int turn_count;        /* turns that have acted */
+    int knob_version;      /* grows whenever a knob's value changes: session_knobs is worth calling */
+    char parent[40];       /* of a branch */
+    int64_t parent_frame;
+    int event_count;       /* the last SESSION_EVENTS, oldest first */
+    session_event events[SESSION_EVENTS];
+    int stage_count;
+    session_stage stages[SESSION_STAGES];
 } session_snapshot;
 
 /* Loads the scene, opens the ledger, plans, and starts the thread. Input errors are returned here, before any row or folder is made. */
@@ -87,8 +119,32 @@ void session_snapshot_free(session_snapshot *snapshot);
 /* Requests, from any thread (session_stop also from a signal handler). */
 void session_pause(session *s, bool paused);
 void session_step_once(session *s); /* while paused: one frame */
+void session_run_to(session *s, int64_t frame); /* go on, and pause when that frame is reached; one that is past pauses at the next */
 void session_stop(session *s);      /* finish the frame, write a checkpoint, end as interrupted */
 void session_abandon(session *s);   /* leave at the next step: up to the last whole frame is kept */
+
+/* The run's knobs, with turns counted in that have been asked for and act at the next frame. As scene_knobs; from any thread. */
+int session_knobs(session *s, knob *out, int limit);
+
+/* Asks for a turn, from any thread: checked at once (errors as scene_turn; STATUS_INPUT too when the run has ended), acts at the next boundary
+ * between frames. It is kept with its frame in the run's folder (turns.json), in the ledger and in checkpoints, before any step sees it. */
+status session_turn(session *s, const char *path, const double value[3], report *r);
+status session_turn_text(session *s, const char *path, const char *value, report *r);
+
+/* The turns that have acted, and those known beforehand that will, by frame; from any thread. Returns how many there are. */
+int session_turns(session *s, knob_turn *out, int limit);
+
+/* Frames whose checkpoints are there, ascending; from any thread. Returns how many there are. */
+int session_checkpoints(session *s, int64_t *frames, int limit);
+
+/* Writes a material as it now is to a Lua file that loads as a recipe and resolves to the same values. A file that is there is replaced.
+ * Errors: no such material, a path that cannot be written. */
+status session_save_recipe(session *s, int material, const char *path, report *r);
+
+/* Fields that this run can be coloured by, and the choice; from any thread. An unknown name is an input error with the nearest. The next
+ * snapshot has it, while the run is paused or ended too. */
+int session_colours(session *s, char (*names)[32], int limit);
+status session_colour(session *s, const char *name, report *r);
 
 /* Waits for the end (at most `seconds`; negative: for ever). True when it has ended. */
 bool session_wait(session *s, double seconds);

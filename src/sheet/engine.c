@@ -214,6 +214,10 @@ static status step(sheet *s, double time, double dt, sheet_fault *fault, report 
     return reduce_results(s, dt, fault, r);
 }
 
+static void surround(sheet *s, const double gravity[3]) {
+    memcpy(s->definition.gravity, gravity, sizeof s->definition.gravity);
+}
+
 static status refresh(sheet *s, report *r) {
     return build(s, false, r);
 }
@@ -267,6 +271,6 @@ const sheet_engine sheet_engine_table = {
     .simd = TEXT(SHEET_SIMD_NAME), .precision = SUNDER_PRECISION, .effects = sheet_effect_table, .effect_count = SHEET_EFFECTS,
     .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .step = step, .settle = sheet_diffuse,
     .measure = sheet_measure, .read = sheet_read, .components = components, .bonds = sheet_bonds, .calibration = calibration,
-    .save = sheet_save, .restore = sheet_restore, .stages = stage_names, .refresh = refresh,
+    .save = sheet_save, .restore = sheet_restore, .stages = stage_names, .surround = surround, .refresh = refresh,
     .bytes_per_particle = bytes_per_particle, .phases = phases,
 };

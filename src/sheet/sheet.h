@@ -131,7 +131,8 @@ typedef struct sheet_engine {
     status (*restore)(sheet *s, const record_list *list, report *r);
     /* Lists what runs within a step for effects in `mask`, in order. Returns how many; text has room for `limit` names. */
     int (*stages)(uint32_t mask, char (*text)[48], int limit);
-    /* A knob was turned: values in the definition's materials changed. Histories keep their values. */
+    void (*surround)(sheet *s, const double gravity[3]); /* what acts on everything; between steps */
+    /* A knob was turned: values in the definition's materials changed. Between frames. Histories keep their values. */
     status (*refresh)(sheet *s, report *r);
     double (*bytes_per_particle)(const sheet *s);
     void (*phases)(const sheet *s, double seconds[SHEET_PHASES]);

@@ -52,6 +52,19 @@ int simulation_read(const simulation *s, const char *field, double *out) {
     return out ? s->engine->read(s->solid, field, out) : s->engine->components(s->solid, field);
 }
 
+status engine_refresh(simulation *s, report *r) {
+    static const double still[3] = {0};
+    const effect_values *gravity = &s->scene->effects[effect_index("gravity")], *damping = &s->scene->effects[effect_index("mass_damping")];
+    const double *g = gravity->on ? gravity->value[0] : still;
+    if (s->sheet) {
+        s->sheets->surround(s->sheet, g);
+        return s->sheets->refresh(s->sheet, r);
+    }
+    s->engine->surround(s->solid, g, damping->on ? damping->value[0][0] : 0);
+    s->engine->refresh(s->solid);
+    return STATUS_OK;
+}
+
 const char *simulation_picture_field(const simulation *s) {
     if (!s->sheet) return "damage";
     return simulation_read(s, "diffused", NULL) ? "diffused" : "broken";

@@ -8,7 +8,8 @@
 
 /* A scene has solids or sheets. */
 struct simulation {
-    const scene *scene;
+    const scene *start; /* as it was given */
+    scene *scene;       /* a copy of it, in which knobs are turned; engines borrow its values */
     const solid_engine *engine;
     solid *solid; /* or, in a scene of sheets, NULL */
     const sheet_engine *sheets;
@@ -38,6 +39,8 @@ double engine_bytes(const simulation *s);
 status engine_save(const simulation *s, record_list *list, report *r);
 status engine_restore(simulation *s, const record_list *list, report *r);
 status engine_measure(const simulation *s, simulation_measures *m, report *r);
+/* Knobs were turned: the engines see the scene's values again. Between frames. Errors: memory; values that a sheet's bonds cannot have. */
+status engine_refresh(simulation *s, report *r);
 int engine_define_boundaries(const scene *s, rigid_boundary *out);
 /* From sampled sheets; sets the plan's mask. */
 status engine_create_sheet(simulation *s, int threads, report *r);

@@ -1,5 +1,6 @@
 #include "sim/scene.h"
 
+#include "base/memory.h"
 #include "sheet/sheet.h"
 #include "solid/moduli.h"
 #include "solid/solid.h"
@@ -62,6 +63,16 @@ scene *scene_create(void) {
 
 void scene_destroy(scene *s) {
     if (s) arena_destroy(s->memory);
+}
+
+scene *scene_copy(const scene *s) {
+    scene *copy = memory_allocate(sizeof *copy);
+    if (copy) *copy = *s;
+    return copy;
+}
+
+void scene_copy_free(scene *copy) {
+    memory_free(copy, copy ? sizeof *copy : 0);
 }
 
 int64_t scene_frames(const scene *s) {
@@ -257,6 +268,13 @@ static status check_numbers(const scene *s, report *r) {
         return report_input(r, s->file, 0, rows[i].key, expected, found, NULL);
     }
     return STATUS_OK;
+}
+
+status scene_check_material(scene *s, int material, report *r) {
+    status code = check_material(s, material, &s->materials[material], r);
+    for (int i = 0; i < s->body_count && code == STATUS_OK; i++)
+        if (s->bodies[i].material == material) code = check_fibres(s, &s->bodies[i], r);
+    return code;
 }
 
 status scene_validate(scene *s, report *r) {

@@ -164,6 +164,14 @@ void scene_destroy(scene *s);
  * halves of twins in every material. */
 status scene_validate(scene *s, report *r);
 
+/* The same for one material whose values have changed: its effects, and the fibres of the bodies that it is for. */
+status scene_check_material(scene *s, int material, report *r);
+
+/* A copy whose values may be changed without the scene's; names, shapes and functions stay the scene's, which must outlive it. NULL when out
+ * of memory. */
+scene *scene_copy(const scene *s);
+void scene_copy_free(scene *copy);
+
 /* Whether the scene's bodies are tetrahedra: all are, or none (scene_validate). */
 bool scene_is_tetrahedra(const scene *s);
 

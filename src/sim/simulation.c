@@ -137,7 +137,12 @@ status simulation_create(const scene *definition, const simulation_options *opti
         return report_input(r, NULL, 0, "simd", "an instruction set of this processor: auto, plain, avx2 or avx512", options->simd, NULL);
     simulation *s = memory_allocate(sizeof *s);
     if (!s) return report_set(r, STATUS_SYSTEM, "out of memory for the simulation");
-    s->scene = definition;
+    s->start = definition;
+    s->scene = scene_copy(definition);
+    if (!s->scene) {
+        memory_free(s, sizeof *s);
+        return report_set(r, STATUS_SYSTEM, "out of memory for the simulation");
+    }
     s->engine = engine;
     s->sheets = sheet_engine_find(options->precision, engine->simd);
     s->frame_time = 1 / definition->fps;
@@ -160,6 +165,7 @@ void simulation_destroy(simulation *s) {
     if (s->sheet) s->sheets->destroy(s->sheet);
     sheets_free(&s->sheet_points);
     bodies_free(&s->particles);
+    scene_copy_free(s->scene);
     memory_free(s, sizeof *s);
 }
 

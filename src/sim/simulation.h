@@ -3,7 +3,7 @@
 #define SUNDER_SIM_SIMULATION_H
 
 #include "base/record.h"
-#include "sim/scene.h"
+#include "sim/knobs.h"
 #include "sheet/sheet.h"
 #include "solid/solid.h"
 
@@ -56,6 +56,20 @@ status simulation_create(const scene *s, const simulation_options *options, simu
 void simulation_destroy(simulation *s);
 
 const simulation_plan *simulation_get_plan(const simulation *s);
+
+/* The knobs of the scene as they stand, as scene_knobs does. */
+int simulation_knobs(const simulation *s, knob *out, int limit);
+
+/* Turns a knob between two frames: it acts on the steps from here on. Errors as scene_turn, and memory; after an error all is as it was. */
+status simulation_turn(simulation *s, const char *path, const double value[3], report *r);
+
+status simulation_turn_text(simulation *s, const char *path, const char *value, report *r);
+
+/* All of these, whatever their frames, and the engines see the outcome alone: for a state that is about to be restored. */
+status simulation_replay_turns(simulation *s, const knob_turn *turns, int count, report *r);
+
+/* The scene's values as they stand into a copy of it (scene_copy). */
+void simulation_copy_values(const simulation *s, scene *to);
 
 /* What runs within a step, in order; returns how many names were written. */
 int simulation_stages(const simulation_plan *plan, char (*text)[48], int limit);

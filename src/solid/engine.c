@@ -239,10 +239,31 @@ static status step(solid *s, double dt, solid_fault *fault, report *r) {
     return examine(s, dt, fault, r);
 }
 
+static void surround(solid *s, const double gravity[3], double damping) {
+    memcpy(s->definition.gravity, gravity, sizeof s->definition.gravity);
+    s->definition.damping = damping;
+}
+
+/* An effect's own limit follows from what its last step saw; it is brought up to date by the most that any material's constants ask for. */
+static void hasten_limits(solid *s, real before[SOLID_MATERIALS][EFFECT_LIMIT][CONSTANTS]) {
+    for (int e = 0; e < s->effect_count; e++) {
+        double most = 0;
+        for (int m = 0; effects[e]->stages->hasten && m < s->definition.material_count; m++)
+            if (s->material_mask[m] >> e & 1) most = fmax(most, effects[e]->stages->hasten(before[m][e], s->constants[m][e]));
+        if (most > 0) s->limits[e] *= most;
+    }
+}
+
+/* What it leaves depends on the state and the new values alone, as a resumed run finds them, not on how the state was reached. */
 static void refresh(solid *s) {
+    real before[SOLID_MATERIALS][EFFECT_LIMIT][CONSTANTS];
+    memcpy(before, s->constants, sizeof before);
     solid_constants_refresh(s);
+    hasten_limits(s, before);
     transfer_limits(s);
-    collect_limits(s);
+    s->limits[EFFECT_elastic] = 0;
+    for (int32_t t = 0; t < s->tile_count; t++)
+        s->limits[EFFECT_elastic] = fmax(s->limits[EFFECT_elastic], (double)s->tile_results[t].limit[EFFECT_elastic]);
 }
 
 static int components(const solid *s, const char *field) {
@@ -303,5 +324,5 @@ const solid_engine solid_engine_table = {
     .simd = TEXT(SOLID_SIMD_NAME), .precision = SUNDER_PRECISION, .effects = effects, .effect_count = SOLID_EFFECTS,
     .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .sort = begin_frame, .step = step,
     .measure = solid_measure, .read = particles_read, .components = components, .save = solid_save, .restore = solid_restore,
-    .stages = stage_names, .knows = knows, .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = phases,
+    .stages = stage_names, .knows = knows, .surround = surround, .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = phases,
 };

@@ -107,7 +107,9 @@ typedef struct solid_engine {
     int (*stages)(uint32_t mask, char (*text)[48], int limit);
     /* Whether this engine can run an effect of its list. */
     bool (*knows)(const effect *e);
-    /* A knob was turned: values in the definition's materials changed. */
+    /* What acts on everything: gravity, and the share of speed lost in a unit of time. Between steps. */
+    void (*surround)(solid *s, const double gravity[3], double damping);
+    /* A knob was turned: values in the definition's materials changed. Between frames. */
     void (*refresh)(solid *s);
     /* Bytes a particle, and seconds spent by phase since the start: sort, p2g, grid, g2p. */
     double (*bytes_per_particle)(const solid *s);

@@ -232,6 +232,8 @@ typedef struct solid_stages {
     status (*solve)(solid *s, real dt, report *r);
     /* After the grid's update, once a step: what must hold for its velocities. */
     status (*constrain)(solid *s, real dt, report *r);
+    /* By how much constants that have changed bring the effect's own step limit down, 1/Δt over what it was; NULL: it has none of its own. */
+    double (*hasten)(const real before[CONSTANTS], const real after[CONSTANTS]);
     /* Tells the engine what a material needs of it beyond constants; called after `constants`. */
     void (*declare)(solid *s, int material, const effect_values *all);
 } solid_stages;

@@ -283,6 +283,11 @@ static bool knows(const effect *e) {
     return !s->degrade && !s->update && !s->solve && !s->constrain && !s->stress == !s->piola;
 }
 
+static void surround(solid *s, const double gravity[3], double damping) {
+    memcpy(s->definition.gravity, gravity, sizeof s->definition.gravity);
+    s->definition.damping = damping;
+}
+
 static void refresh(solid *s) {
     solid_constants_refresh(s);
     tetra_deform(whole(s));
@@ -309,5 +314,5 @@ const solid_engine solid_tetra_table = {
     .simd = TEXT(SOLID_SIMD_NAME), .precision = SUNDER_PRECISION, .effects = effects, .effect_count = SOLID_EFFECTS,
     .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .sort = sort, .step = step,
     .measure = tetra_measure, .read = tetra_read, .components = tetra_components, .save = tetra_save, .restore = tetra_restore,
-    .stages = stage_names, .knows = knows, .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = phases,
+    .stages = stage_names, .knows = knows, .surround = surround, .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = phases,
 };

@@ -239,6 +239,16 @@ status checkpoint_read_last(const char *folder, record_list *records, int64_t *f
     return s;
 }
 
+int checkpoint_frames(const char *folder, int64_t *frames, int limit) {
+    file_numbers numbers;
+    report ignored;
+    if (file_numbers_read(folder, "checkpoint-", ".hdf", &numbers, &ignored) != STATUS_OK) return 0;
+    int count = (int)numbers.count;
+    for (int i = 0; i < count && i < limit; i++) frames[i] = numbers.items[i];
+    file_numbers_free(&numbers);
+    return count;
+}
+
 status checkpoint_thin(const char *folder, int keep, report *r) {
     if (keep < 1) return STATUS_OK;
     file_numbers numbers;

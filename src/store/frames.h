@@ -43,6 +43,9 @@ status checkpoint_write(const char *folder, const frame_header *header, const re
 status checkpoint_read(const char *folder, int64_t frame, record_list *records, report *r);
 status checkpoint_read_last(const char *folder, record_list *records, int64_t *frame, report *warning, report *r);
 
+/* Frames that have a checkpoint, ascending, at most `limit`; returns how many there are, 0 too where the folder cannot be read. */
+int checkpoint_frames(const char *folder, int64_t *frames, int limit);
+
 /* Removes all but the `keep` newest checkpoints; below 1 it keeps all. */
 status checkpoint_thin(const char *folder, int keep, report *r);
 

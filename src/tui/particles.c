@@ -89,7 +89,7 @@ status particles_prepare(tui_app *app, tui_area area, report *r) {
         return failed;
     }
     view_projection p = view_camera_projection(&app->camera, (float)app->canvas.width, (float)app->canvas.height);
-    view_canvas_draw(&app->canvas, &p, s->position, s->damage, s->point_count, app->radius);
+    view_canvas_draw(&app->canvas, &p, s->position, s->scalar, s->point_count, app->radius);
     view_canvas_light(&app->canvas, app->radius * p.scale);
     view_raster(&app->canvas, app->mode, choose_ink(app), app->cells);
     app->picture_old = false;

@@ -70,7 +70,7 @@ static void deform(session *s, double t) {
         out->position[3 * i] = x[0] * (1 + 0.2f * p) + (tear > 0 ? 0.5f : -0.5f) * gap;
         out->position[3 * i + 1] = x[1] * neck;
         out->position[3 * i + 2] = x[2] * neck;
-        out->damage[i] = s->options.undamaged ? 0 : fminf(expf(-tear * tear / 0.02f) * 1.5f * p, 1);
+        out->scalar[i] = s->options.undamaged ? 0 : fminf(expf(-tear * tear / 0.02f) * 1.5f * p, 1);
     }
 }
 
@@ -87,7 +87,7 @@ static void measure(session *s, double t) {
     now->fibre = 0.3 * now->elastic * (1 + 0.1 * sin(30 * t));
     now->work = 3.1 * fmin(t, 0.55);
     for (int64_t i = 0; i < out->point_count; i++) {
-        double d = (double)out->damage[i];
+        double d = (double)out->scalar[i];
         int bin = (int)(d * SESSION_BINS);
         now->histogram[bin < SESSION_BINS ? bin : SESSION_BINS - 1] += 1 / (double)out->point_count;
         now->damage_mean += d / (double)out->point_count;
@@ -228,9 +228,9 @@ session *fake_session_start(const fake_options *options) {
     size_t count = (size_t)options->particles;
     s->rest = memory_allocate_array(3 * count, sizeof(float));
     s->state.position = memory_allocate_array(3 * count, sizeof(float));
-    s->state.damage = memory_allocate_array(count, sizeof(float));
+    s->state.scalar = memory_allocate_array(count, sizeof(float));
     s->state.body = memory_allocate_array(count, sizeof(int32_t));
-    if (!s->rest || !s->state.position || !s->state.damage || !s->state.body) exit(1);
+    if (!s->rest || !s->state.position || !s->state.scalar || !s->state.body) exit(1);
     fill_rest(s);
     describe(s);
     pthread_mutex_init(&s->lock, NULL);
@@ -244,7 +244,7 @@ session *fake_session_start(const fake_options *options) {
 static void free_points(session_snapshot *snapshot) {
     size_t count = (size_t)snapshot->point_capacity;
     memory_free(snapshot->position, 3 * count * sizeof(float));
-    memory_free(snapshot->damage, count * sizeof(float));
+    memory_free(snapshot->scalar, count * sizeof(float));
     memory_free(snapshot->body, count * sizeof(int32_t));
 }
 
@@ -257,13 +257,13 @@ bool session_poll(session *s, session_snapshot *snapshot) {
         if (kept.point_capacity < s->state.point_count) {
             free_points(&kept);
             kept.position = memory_allocate_array(3 * count, sizeof(float));
-            kept.damage = memory_allocate_array(count, sizeof(float));
+            kept.scalar = memory_allocate_array(count, sizeof(float));
             kept.body = memory_allocate_array(count, sizeof(int32_t));
             kept.point_capacity = s->state.point_count;
         }
         *snapshot = s->state;
         snapshot->position = memcpy(kept.position, s->state.position, 3 * count * sizeof(float));
-        snapshot->damage = memcpy(kept.damage, s->state.damage, count * sizeof(float));
+        snapshot->scalar = memcpy(kept.scalar, s->state.scalar, count * sizeof(float));
         snapshot->body = memcpy(kept.body, s->state.body, count * sizeof(int32_t));
         snapshot->point_capacity = kept.point_capacity;
     }
@@ -289,6 +289,52 @@ void session_step_once(session *s) {
     s->steps++;
     pthread_cond_broadcast(&s->changed);
     pthread_mutex_unlock(&s->lock);
+}
+
+void session_run_to(session *s, int64_t frame) {
+    (void)frame;
+    session_pause(s, false);
+}
+
+int session_knobs(session *s, knob *out, int limit) {
+    (void)s, (void)out, (void)limit;
+    return 0;
+}
+
+status session_turn(session *s, const char *path, const double value[3], report *r) {
+    (void)s, (void)value;
+    return report_input(r, NULL, 0, path, "a knob", "a session that has none", NULL);
+}
+
+status session_turn_text(session *s, const char *path, const char *value, report *r) {
+    (void)s, (void)value;
+    return report_input(r, NULL, 0, path, "a knob", "a session that has none", NULL);
+}
+
+int session_turns(session *s, knob_turn *out, int limit) {
+    (void)s, (void)out, (void)limit;
+    return 0;
+}
+
+int session_checkpoints(session *s, int64_t *frames, int limit) {
+    (void)s, (void)frames, (void)limit;
+    return 0;
+}
+
+status session_save_recipe(session *s, int material, const char *path, report *r) {
+    (void)s, (void)material;
+    return report_input(r, path, 0, NULL, "a material", "a session that has none", NULL);
+}
+
+int session_colours(session *s, char (*names)[32], int limit) {
+    (void)s;
+    if (limit > 0) snprintf(names[0], sizeof names[0], "damage");
+    return 1;
+}
+
+status session_colour(session *s, const char *name, report *r) {
+    (void)s;
+    return strcmp(name, "damage") == 0 ? STATUS_OK : report_input(r, NULL, 0, "colour", "a field of this run", name, "damage");
 }
 
 void session_stop(session *s) {

@@ -73,7 +73,8 @@ static const parameter parameters[] = {
     [KEY_C] = {.key = "C", .unit = "1", .doc = "capacity of a mass", .minimum = 1e-12, .maximum = 1e18, .fallback = {1}, .live = true,
                .logarithmic = true},
     [KEY_DECAY] = PARAMETER_PLAIN("decay", "1/time", "rate at which the quantity is lost everywhere", 0, 1e9, 0),
-    [KEY_INITIAL] = PARAMETER_PLAIN("initial", "1", "its value everywhere at the start", -1e12, 1e12, 0),
+    [KEY_INITIAL] = {.key = "initial", .unit = "1", .doc = "its value everywhere at the start", .minimum = -1e12, .maximum = 1e12,
+                     .why_not = "the start is over"},
 };
 
 static const effect_field fields[] = {

@@ -20,9 +20,9 @@ static const parameter parameters[] = {
     [KEY_STRETCH] = {.key = "stretch", .unit = "1", .doc = "critical stretch of a bond", .minimum = 0, .maximum = 100, .live = true,
                      .logarithmic = true},
     [KEY_CRITERION] = {.key = "criterion", .unit = "1", .doc = "mechanical: stretch less swelling; total: the paper's", .kind = PARAMETER_CHOICE,
-                       .maximum = 1, .choices = criteria},
+                       .maximum = 1, .choices = criteria, .why_not = "bonds remember the stretch that it measures"},
     [KEY_TRAPPING] = {.key = "trapping", .unit = "1", .doc = "correct G for how the lattice holds cracks back", .kind = PARAMETER_BOOLEAN,
-                      .maximum = 1, .fallback = {1}},
+                      .maximum = 1, .fallback = {1}, .live = true},
 };
 
 static const effect_field fields[] = {

@@ -280,6 +280,11 @@ static status resolve(effect_values *own, const effect_values *all, report *r) {
     return report_input(r, NULL, 0, "damage.break_stretch", "a stretch whose critical value is positive", found, NULL);
 }
 
+/* The explicit update's pace is that of 1/η. */
+static double hasten(const real before[CONSTANTS], const real after[CONSTANTS]) {
+    return before[ETA_INVERSE] > 0 ? (double)after[ETA_INVERSE] / (double)before[ETA_INVERSE] : 1;
+}
+
 static const char *const form_choices[] = {"explicit", "implicit", NULL};
 
 static const parameter parameters[KEY_COUNT] = {
@@ -300,9 +305,10 @@ static const parameter parameters[KEY_COUNT] = {
     [KEY_ZETA] = {.key = "zeta", .unit = "1", .doc = "slope of damage above the critical stress", .minimum = 1e-6,
                   .maximum = 1e6, .fallback = {1}, .live = true, .logarithmic = true},
     [KEY_LENGTH_SCALE] = {.key = "length_scale", .unit = "length", .doc = "half width of a crack; 0: half the grid spacing",
-                          .maximum = 1e9},
+                          .maximum = 1e9, .why_not = "cracks already have its width"},
     [KEY_FORM] = {.key = "form", .unit = "1", .doc = "explicit: cheap, limits the time step by eta; implicit: solved on the grid, any eta",
-                  .kind = PARAMETER_CHOICE, .maximum = 1, .choices = form_choices},
+                  .kind = PARAMETER_CHOICE, .maximum = 1, .choices = form_choices,
+                  .why_not = "the grid is made for one form"},
     [KEY_TOLERANCE] = {.key = "tolerance", .unit = "1", .doc = "relative residual of the implicit solve", .minimum = 1e-14,
                        .maximum = 0.1, .fallback = {1e-4}, .live = true, .logarithmic = true},
     [KEY_AS_SHIPPED] = {.key = "as_shipped", .unit = "1",
@@ -325,7 +331,7 @@ static const effect_measure measures[] = {
     {"broken_fraction", "1", "fraction of particles over 0.9"},
 };
 
-static const solid_stages stages = {.constants = constants, .declare = declare, .degrade = degrade, .solve = implicit_solve, .update = update};
+static const solid_stages stages = {.constants = constants, .declare = declare, .degrade = degrade, .solve = implicit_solve, .update = update, .hasten = hasten};
 
 const effect SOLID_EFFECT(damage) = {
     .name = "damage", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "anisotropic damage of the matrix",

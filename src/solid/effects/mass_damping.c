@@ -11,7 +11,7 @@ static void slow_down(const grid_work *w) {
 
 static const parameter parameters[] = {
     {.key = "rate", .unit = "1/time", .doc = "share of its speed that everything loses in a unit of time, while that is small", .maximum = 1e9,
-     .short_form = "mass_damping = 0.5", .required = true},
+     .live = true, .short_form = "mass_damping = 0.5", .required = true},
 };
 
 static const solid_stages stages = {.grid = slow_down};

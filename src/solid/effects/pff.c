@@ -85,7 +85,8 @@ static void update(tile_work *w) {
 static const parameter parameters[KEY_COUNT] = {
     [KEY_TOUGHNESS] = {.key = "toughness", .unit = "mass/time^2", .doc = "energy that a crack takes per area", .minimum = 1e-18,
                        .maximum = 1e18, .fallback = {1}, .live = true, .logarithmic = true, .required = true},
-    [KEY_LENGTH_SCALE] = {.key = "length_scale", .unit = "length", .doc = "half width of a crack; 0: half the grid spacing", .maximum = 1e9},
+    [KEY_LENGTH_SCALE] = {.key = "length_scale", .unit = "length", .doc = "half width of a crack; 0: half the grid spacing", .maximum = 1e9,
+                          .why_not = "cracks already have its width"},
     [KEY_MOBILITY] = {.key = "mobility", .unit = "1/time", .doc = "how fast the phase field follows; 0: at once", .maximum = 1e12,
                       .live = true, .logarithmic = true},
     [KEY_RESIDUAL] = {.key = "residual", .unit = "1", .doc = "stiffness that a broken particle keeps", .maximum = 0.999, .fallback = {0.01},

@@ -170,7 +170,7 @@ static status queue_turn(session_knobs_state *k, const char *path, const char *v
 status session_turn_text(session *s, const char *path, const char *value, report *r) {
     if (atomic_load(&s->ended))
         return report_input(r, NULL, 0, path, "a run that goes on (of one that has ended, a branch can be made)", "one that has ended", NULL);
-    if (strlen(value) >= KNOB_TEXT) return report_input(r, NULL, 0, path, "a value of under 96 characters", "a longer one", NULL);
+    if (strlen(value) >= KNOB_TEXT) return report_input(r, NULL, 0, path, "a value of under 128 characters", "a longer one", NULL);
     pthread_mutex_lock(&s->knobs.lock);
     status code = queue_turn(&s->knobs, path, value, r);
     pthread_mutex_unlock(&s->knobs.lock);

@@ -113,7 +113,9 @@ static void describe_path(const scene *s, knob_place p, knob *k) {
     const effect *e = p.effect >= 0 ? effect_catalogue(&count)[p.effect] : NULL;
     if (p.material >= 0) memcpy(k->owner, s->materials[p.material].name, sizeof k->owner);
     if (e) snprintf(k->effect, sizeof k->effect, "%s", e->name);
-    snprintf(k->path, sizeof k->path, "%.*s%s%s%s%.60s", (int)(sizeof k->owner - 1), k->owner, *k->owner ? "." : "", e ? e->name : "", e ? "." : "", k->key);
+    if (*k->owner && e) snprintf(k->path, sizeof k->path, "%.63s.%.30s.%.31s", k->owner, e->name, k->key);
+    else if (*k->owner || e) snprintf(k->path, sizeof k->path, "%.63s.%.31s", e ? e->name : k->owner, k->key);
+    else snprintf(k->path, sizeof k->path, "%.63s", k->key);
 }
 
 static bool varies(const scene_material *m, knob_place p) {

@@ -9,7 +9,7 @@
 
 #include "sim/scene.h"
 
-enum { KNOB_PATH = 96, KNOB_TEXT = 96, KNOB_LIMIT = SCENE_PARAMETERS };
+enum { KNOB_PATH = 128, KNOB_TEXT = 128, KNOB_LIMIT = SCENE_PARAMETERS };
 
 typedef struct knob {
     char path[KNOB_PATH];  /* "tube.damage.eta", "gravity.acceleration": the word of --set and of the resolved parameters */

@@ -145,7 +145,7 @@ static status write_contents(hid_t file, const char *path, const frame_header *h
 
 status checkpoint_write(const char *folder, const frame_header *header, const record_list *records, report *r) {
     assert(header->frame >= 0);
-    hdf_quiet();
+    HDF_ALONE;
     char path[FILE_PATH];
     hdf_image image;
     status s = checkpoint_path(path, folder, header->frame, r);
@@ -204,7 +204,7 @@ static status missing(const char *path, const char *folder, int64_t frame, repor
 }
 
 status checkpoint_read(const char *folder, int64_t frame, record_list *records, report *r) {
-    hdf_quiet();
+    HDF_ALONE;
     records->count = 0;
     char path[FILE_PATH];
     bool whole;
@@ -213,18 +213,16 @@ status checkpoint_read(const char *folder, int64_t frame, record_list *records, 
     return access(path, F_OK) == 0 ? read_path(path, records, &whole, r) : missing(path, folder, frame, r);
 }
 
-status checkpoint_read_last(const char *folder, record_list *records, int64_t *frame, report *warning, report *r) {
-    hdf_quiet();
-    report_clear(warning);
-    records->count = 0;
-    file_numbers numbers;
-    status s = file_numbers_read(folder, "checkpoint-", ".hdf", &numbers, r);
-    if (s) return s;
-    if (numbers.count == 0) return missing(folder, folder, -1, r);
+/* The newest whole one up to `most` of those listed. */
+static status read_newest(const char *folder, const file_numbers *numbers, int64_t most, record_list *records, int64_t *frame, report *warning,
+                          report *r) {
     bool whole = false;
-    for (size_t i = numbers.count; i > 0 && !whole; i--) {
+    status s = STATUS_OK;
+    *frame = -1;
+    for (size_t i = numbers->count; i > 0 && !whole; i--) {
         char path[FILE_PATH];
-        *frame = numbers.items[i - 1];
+        if (numbers->items[i - 1] > most) continue;
+        *frame = numbers->items[i - 1];
         s = checkpoint_path(path, folder, *frame, r);
         if (!s) s = read_path(path, records, &whole, r);
         if (!whole && !warning->code) *warning = *r; /* the newest's trouble is the one worth telling */
@@ -235,6 +233,29 @@ status checkpoint_read_last(const char *folder, record_list *records, int64_t *f
                  "; the one of frame %" PRId64 " is used instead", *frame);
     }
     if (s) report_clear(warning);
+    return s;
+}
+
+status checkpoint_read_last(const char *folder, record_list *records, int64_t *frame, report *warning, report *r) {
+    HDF_ALONE;
+    report_clear(warning);
+    records->count = 0;
+    file_numbers numbers;
+    status s = file_numbers_read(folder, "checkpoint-", ".hdf", &numbers, r);
+    if (s) return s;
+    if (numbers.count == 0) return missing(folder, folder, -1, r);
+    s = read_newest(folder, &numbers, INT64_MAX, records, frame, warning, r);
+    file_numbers_free(&numbers);
+    return s;
+}
+
+status checkpoint_read_before(const char *folder, int64_t most, record_list *records, int64_t *frame, report *warning, report *r) {
+    HDF_ALONE;
+    report_clear(warning);
+    records->count = 0;
+    file_numbers numbers;
+    status s = file_numbers_read(folder, "checkpoint-", ".hdf", &numbers, r);
+    if (!s) s = read_newest(folder, &numbers, most, records, frame, warning, r);
     file_numbers_free(&numbers);
     return s;
 }

@@ -159,7 +159,7 @@ static status write_views(const char *folder, const frame_header *header, const 
 
 status frame_write(const char *folder, const frame_header *header, const record_list *records, int deflate, report *r) {
     assert(header->frame >= 0 && deflate >= 0 && deflate <= 9);
-    hdf_quiet();
+    HDF_ALONE;
     char path[FILE_PATH], frames[FILE_PATH];
     status s = frame_path(path, folder, "", header->frame, r);
     if (!s) s = path_format(frames, r, "%s/frames", folder);
@@ -189,7 +189,7 @@ static status missing_frame(const char *path, const char *frames, int64_t frame,
 }
 
 status frame_read(const char *folder, int64_t frame, record_list *records, double *time, int64_t *step, report *r) {
-    hdf_quiet();
+    HDF_ALONE;
     records->count = 0;
     char path[FILE_PATH], frames[FILE_PATH];
     status s = frame_path(path, folder, "", frame, r);
@@ -206,7 +206,7 @@ status frame_read(const char *folder, int64_t frame, record_list *records, doubl
 }
 
 int64_t frame_last(const char *folder) {
-    hdf_quiet();
+    HDF_ALONE;
     char frames[FILE_PATH], path[FILE_PATH];
     report ignored;
     file_numbers numbers;
@@ -248,7 +248,7 @@ static status cut_frames(const char *frames, int64_t frame, report *r) {
 }
 
 status frame_truncate(const char *folder, int64_t frame, report *r) {
-    hdf_quiet();
+    HDF_ALONE;
     char path[FILE_PATH];
     /* Checkpoints first: one that outlives its frames would be resumed from, and leave a gap behind it. */
     status s = remove_above(folder, "checkpoint-", frame, r);

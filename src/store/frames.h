@@ -1,6 +1,6 @@
 /* A run's folder: frames and checkpoints, one HDF5 file each, written beside, synced and renamed.
  *
- * HDF5 is called from one thread at a time (the caller sees to it), no file stays open between calls, HDF5's own
+ * Any thread may call; HDF5 is called by one at a time. No file stays open between calls, HDF5's own
  * error printing is off and its error stack ends up in the report. */
 #ifndef SUNDER_STORE_FRAMES_H
 #define SUNDER_STORE_FRAMES_H
@@ -43,11 +43,25 @@ status checkpoint_write(const char *folder, const frame_header *header, const re
 status checkpoint_read(const char *folder, int64_t frame, record_list *records, report *r);
 status checkpoint_read_last(const char *folder, record_list *records, int64_t *frame, report *warning, report *r);
 
+/* The newest whole checkpoint of a frame up to `most`. Where there is none, *frame is −1 and the status STATUS_OK. */
+status checkpoint_read_before(const char *folder, int64_t most, record_list *records, int64_t *frame, report *warning, report *r);
+
 /* Frames that have a checkpoint, ascending, at most `limit`; returns how many there are, 0 too where the folder cannot be read. */
 int checkpoint_frames(const char *folder, int64_t *frames, int limit);
 
 /* Removes all but the `keep` newest checkpoints; below 1 it keeps all. */
 status checkpoint_thin(const char *folder, int keep, report *r);
+
+/* Keeps checkpoints within `bytes` in all: the first always, and the two newest; of the others the ones go first that the rest make up for best, so that those
+ * left are dense where they are new and sparse where they are old. *over (may be NULL) is how many bytes there are still too many. */
+status checkpoint_ring(const char *folder, int64_t bytes, int64_t *over, report *r);
+
+/* Gives the frames (with their views) and checkpoints of a run up to `frame` a second name in another run's folder, which then has them for itself
+ * whatever happens to the first; where the file system cannot link, they are copied. Files that are there already stay. */
+status frame_adopt(const char *from, const char *folder, int64_t frame, report *r);
+
+/* Whether the folder holds this frame. */
+bool frame_exists(const char *folder, int64_t frame);
 
 /* Removes frames (with their views) and checkpoints numbered above `frame`: a resumed run rewrites them. */
 status frame_truncate(const char *folder, int64_t frame, report *r);

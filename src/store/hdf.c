@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "store/files.h"
 
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -15,8 +16,22 @@ enum {
 /* A name that no file can have: the core driver first tries to open what it is about to create. */
 #define NO_FILE "/dev/null/sunder-image"
 
-void hdf_quiet(void) {
+static pthread_mutex_t one_thread = PTHREAD_MUTEX_INITIALIZER;
+
+/* HDF5's own printing, off for this thread. */
+static void hdf_quiet(void) {
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+}
+
+int hdf_enter(void) {
+    pthread_mutex_lock(&one_thread);
+    hdf_quiet();
+    return 0;
+}
+
+void hdf_leave(const int *entered) {
+    (void)entered;
+    pthread_mutex_unlock(&one_thread);
 }
 
 static herr_t keep_innermost(unsigned n, const H5E_error2_t *error, void *context) {

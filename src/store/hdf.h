@@ -9,8 +9,11 @@
 
 #include <hdf5.h>
 
-/* Turns HDF5's printing off for this thread. Every public call of frames.h begins with it. */
-void hdf_quiet(void);
+/* HDF5 knows no threads: the function in which this stands is alone with it until it returns, and HDF5 prints nothing. Every public call of
+ * frames.h begins with it; not to be nested. */
+#define HDF_ALONE int hdf_alone __attribute__((cleanup(hdf_leave), unused)) = hdf_enter()
+int hdf_enter(void);
+void hdf_leave(const int *entered);
 
 /* Fills `r` with STATUS_SYSTEM: "PATH: cannot DOING: the innermost message of HDF5's error stack". */
 status hdf_fail(report *r, const char *path, const char *doing);

@@ -69,6 +69,23 @@ status ledger_frame(ledger *l, const char *id, int64_t frame, double time, int64
 /* An event ("first_crack", "warning", "knob", "checkpoint" …) with free text. */
 status ledger_event(ledger *l, const char *id, int64_t frame, const char *kind, const char *text, report *r);
 
+/* A turn of a knob: it acts between `frame` and the next. */
+typedef struct ledger_turn {
+    int64_t frame;
+    const char *path, *value; /* "tube.damage.eta", "0.05" */
+} ledger_turn;
+
+/* A run's turns, in the order in which they act: turns [count] take the place of those that the ledger had. */
+status ledger_turns(ledger *l, const char *id, const ledger_turn *turns, int count, report *r);
+
+/* Called for each turn in order; anything but STATUS_OK stops and is returned. The texts live until it returns. */
+typedef status (*ledger_turn_taker)(void *context, const ledger_turn *turn, report *r);
+status ledger_each_turn(ledger *l, const char *id, ledger_turn_taker take, void *context, report *r);
+
+/* Copies frames with their measures, and events, of a run up to `frame` to another run, which has none of them yet: a branch has its past in its own
+ * rows. */
+status ledger_copy_past(ledger *l, const char *from, const char *id, int64_t frame, report *r);
+
 /* Ends a run: status is "done", "failed", "interrupted" ("dead" is for runs that could not say so themselves);
  * summary_json is the `run --json` object. */
 status ledger_finish(ledger *l, const char *id, const char *run_status, int64_t frames, int64_t steps,

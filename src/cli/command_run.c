@@ -231,7 +231,8 @@ int command_run(int count, char **arguments) {
     report r;
     if (screen) {
         tui_options look = tui_options_default();
-        (void)tui_watch(s, &look, &r);
+        look.database = o.session.database;
+        (void)tui_workbench(&s, &look, &r);
     } else {
         catch_interrupts(s);
         watch_plainly(s, o.json ? stderr : stdout, o.quiet);

@@ -1,40 +1,18 @@
 #include "tui/actions.h"
 
-#include <stddef.h>
+#include "base/names.h"
+#include "tui/shell.h"
 
-static const float turn = 0.1309f; /* rad a key press: 7.5° */
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
-/* ---- the run ----------------------------------------------------------------------------------------------------- */
-
-static void pause_run(tui_app *app, int argument) {
-    (void)argument;
-    if (app->ended) {
-        app_notice(app, "The run has ended.");
-        return;
-    }
-    bool pausing = app->shot->state != SESSION_PAUSED;
-    session_pause(app->run, pausing);
-    app_notice(app, pausing ? "Pausing after this frame." : "Going on.");
-}
-
-static void step_run(tui_app *app, int argument) {
-    (void)argument;
-    if (app->ended) {
-        app_notice(app, "The run has ended.");
-    } else if (app->shot->state != SESSION_PAUSED) {
-        session_pause(app->run, true);
-        app_notice(app, "Pausing after this frame; s again computes one frame at a time.");
-    } else {
-        session_step_once(app->run);
-        app_notice(app, "One frame.");
-    }
-}
+/* ---- leaving ----------------------------------------------------------------------------------------------------- */
 
 static void stop_run(tui_app *app) {
     app->leave_at_end = true;
-    if (app->stopping) return;
-    app->stopping = true;
-    session_stop(app->run);
+    app_end_run(app);
 }
 
 static void abandon_run(tui_app *app) {
@@ -42,143 +20,186 @@ static void abandon_run(tui_app *app) {
     session_abandon(app->run);
 }
 
-static void quit(tui_app *app, int argument) {
-    (void)argument;
-    if (app->ended) {
+static status quit(tui_app *app, const char *argument, report *r) {
+    if (argument[0] && strcmp(argument, "stop") != 0)
+        return report_input(r, NULL, 0, "quit", "nothing, or \"stop\"", argument, "stop");
+    if (app->ended && !app_starting(app)) {
         app->leaving = true;
-    } else {
-        app->asking = !app->stopping;
+    } else if (strcmp(argument, "stop") == 0) {
+        log_defer(app);
+        stop_run(app);
+    } else if (!app->stopping || !app->leave_at_end) {
+        app_ask(app, "quit", "stop", 'q', "Stop the run after this frame?");
     }
+    return STATUS_OK;
 }
 
-static void leave(tui_app *app, int argument) {
-    (void)argument;
-    if (!app->ended) abandon_run(app);
+static status leave(tui_app *app, const char *argument, report *r) {
+    (void)argument, (void)r;
+    if (!app->ended) {
+        log_defer(app);
+        abandon_run(app);
+    }
     app->leaving = true;
+    return STATUS_OK;
 }
 
 void actions_interrupt(tui_app *app) {
+    app->shell->asking = false;
+    app->dirty = true;
+    report unused;
     if (app->ended) {
         app->leaving = true;
-    } else if (app->stopping) {
+    } else if (app->stopping && app->leave_at_end) {
         abandon_run(app);
     } else {
-        stop_run(app);
+        (void)app_do(app, "quit", "stop", &unused);
     }
-    app->asking = false;
-    app->dirty = true;
 }
 
 void actions_terminate(tui_app *app) {
+    app->dirty = true;
+    report unused;
     if (app->ended) {
         app->leaving = true;
-    } else {
-        stop_run(app);
+    } else if (!app->leave_at_end || !app->stopping) {
+        (void)app_do(app, "quit", "stop", &unused);
     }
-    app->dirty = true;
 }
 
 /* ---- what is seen ------------------------------------------------------------------------------------------------ */
 
-static void turn_camera(tui_app *app, int direction) {
-    view_camera_orbit(&app->camera, turn * (float)direction, 0);
-    app->picture_old = true;
-}
-
-static void tilt_camera(tui_app *app, int direction) {
-    view_camera_orbit(&app->camera, 0, turn * (float)direction);
-    app->picture_old = true;
-}
-
-static void zoom_camera(tui_app *app, int direction) {
-    view_camera_zoom(&app->camera, direction > 0 ? 1.25f : 0.8f);
-    app->picture_old = true;
-}
-
-static void reset_camera(tui_app *app, int argument) {
-    (void)argument;
-    app->camera = view_camera_default();
-    view_camera_fit(&app->camera, app->fit_minimum, app->fit_maximum);
-    app->spinning = false;
-    app->picture_old = true;
-}
-
-static void spin_camera(tui_app *app, int argument) {
-    (void)argument;
-    app->spinning = !app->spinning;
-    app_notice(app, app->spinning ? "The camera turns by itself; a stops it." : "The camera stands still.");
-}
-
-static void change_mode(tui_app *app, int argument) {
-    (void)argument;
-    do {
-        app->mode = (view_mode)((app->mode + 1) % VIEW_MODES);
-    } while (app->theme.ascii && app->mode != VIEW_ASCII);
-    app->picture_old = true;
-    if (app->theme.ascii) {
-        app_notice(app, "Only ASCII: the locale's character set is not UTF-8.");
-    } else {
-        app_notice(app, "Particles as %s.", view_mode_name(app->mode));
-    }
-}
-
-static void change_palette(tui_app *app, int argument) {
-    (void)argument;
-    app->theme.palette = (view_palette)((app->theme.palette + 1) % VIEW_PALETTES);
-    app->picture_old = true;
-    app_notice(app, app->theme.colours ? "Colours: %s." : "Colours: %s, but this terminal shows none.",
-               view_palette_name(app->theme.palette));
-}
-
-static void change_theme(tui_app *app, int argument) {
-    (void)argument;
-    theme_choose(&app->theme, (tui_theme_kind)((app->theme.kind + 1) % TUI_THEMES));
-    app->picture_old = true;
-    clearok(curscr, TRUE);
-    app_notice(app, "Theme: %s.", theme_name(app->theme.kind));
-}
-
-static void change_histogram(tui_app *app, int argument) {
-    (void)argument;
-    app->log_histogram = !app->log_histogram;
-    app_notice(app, app->log_histogram ? "Histogram: logarithmic." : "Histogram: linear.");
-}
-
-static void open_page(tui_app *app, int page) {
-    app->page = app->page == (tui_page)page ? PAGE_RUN : (tui_page)page;
+static void open_page(tui_app *app, tui_page page) {
+    app->page = app->page == page ? PAGE_NONE : page;
     app->scroll = 0;
     app->at_end = true;
     app->notice[0] = '\0';
 }
 
-static void redraw(tui_app *app, int argument) {
-    (void)argument;
-    clearok(curscr, TRUE);
-    app->picture_old = true;
+static status show_help(tui_app *app, const char *argument, report *r) {
+    (void)argument, (void)r;
+    open_page(app, PAGE_HELP);
+    return STATUS_OK;
+}
+
+static status show_log(tui_app *app, const char *argument, report *r) {
+    (void)argument, (void)r;
+    open_page(app, PAGE_LOG);
+    return STATUS_OK;
+}
+
+static status show_commands(tui_app *app, const char *argument, report *r) {
+    (void)argument, (void)r;
+    open_page(app, PAGE_COMMANDS);
+    return STATUS_OK;
+}
+
+static bool complete_theme(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
+    (void)app;
+    for (int i = 0; i < TUI_THEMES; i++) {
+        if (strncmp(theme_name((tui_theme_kind)i), text, strlen(text)) != 0 || index-- > 0) continue;
+        snprintf(out, ACTION_ARGUMENT, "%s", theme_name((tui_theme_kind)i));
+        return true;
+    }
+    return false;
+}
+
+static status change_theme(tui_app *app, const char *argument, report *r) {
+    tui_theme_kind kind = (tui_theme_kind)((app->theme.kind + 1) % TUI_THEMES);
+    if (argument[0]) {
+        const char *names[TUI_THEMES];
+        for (int i = 0; i < TUI_THEMES; i++) names[i] = theme_name((tui_theme_kind)i);
+        for (kind = 0; kind < TUI_THEMES && strcmp(names[kind], argument) != 0;) kind++;
+        if (kind == TUI_THEMES)
+            return report_input(r, NULL, 0, "theme", "dark, light or colour-blind", argument,
+                                name_nearest(argument, names, TUI_THEMES));
+    }
+    theme_choose(&app->theme, kind);
+    app->redraw = true;
+    app_notice(app, "Theme: %s.", theme_name(app->theme.kind));
+    return STATUS_OK;
+}
+
+static status redraw(tui_app *app, const char *argument, report *r) {
+    (void)argument, (void)r;
+    app->redraw = true;
+    return STATUS_OK;
+}
+
+static status palette(tui_app *app, const char *argument, report *r) {
+    (void)r;
+    prompt_open(app, argument);
+    return STATUS_OK;
+}
+
+/* ---- screens ----------------------------------------------------------------------------------------------------- */
+
+static bool complete_screen(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
+    (void)app;
+    int count;
+    const tui_screen *const *list = tui_screens(&count);
+    for (int i = 0; i < count; i++) {
+        if (strncmp(list[i]->name, text, strlen(text)) != 0 || index-- > 0) continue;
+        snprintf(out, ACTION_ARGUMENT, "%s", list[i]->name);
+        return true;
+    }
+    return false;
+}
+
+static status show_screen(tui_app *app, const char *argument, report *r) {
+    const tui_screen *screen = tui_screen_find(argument);
+    if (!screen) {
+        int count;
+        const tui_screen *const *list = tui_screens(&count);
+        const char *names[TUI_SCREEN_LIMIT];
+        for (int i = 0; i < count; i++) names[i] = list[i]->name;
+        return report_input(r, NULL, 0, "screen", "a screen's name", argument, name_nearest(argument, names, count));
+    }
+    app_show(app, screen);
+    return STATUS_OK;
+}
+
+static status next_screen(tui_app *app, const char *argument, report *r) {
+    (void)r;
+    int count, at = 0, step = strcmp(argument, "back") == 0 ? -1 : 1;
+    const tui_screen *const *list = tui_screens(&count);
+    while (list[at] != app->screen) at++;
+    app_show(app, list[(at + step + count) % count]);
+    return STATUS_OK;
+}
+
+/* ---- the command log --------------------------------------------------------------------------------------------- */
+
+static status save_commands(tui_app *app, const char *argument, report *r) {
+    status s = log_save(app, argument, r);
+    if (s == STATUS_OK) app_notice(app, "The commands so far are in %s; sunder --replay does them again.", argument);
+    return s;
 }
 
 /* ---- the table --------------------------------------------------------------------------------------------------- */
 
 static const tui_action table[] = {
-    {"pause", {' '}, "space", "pause", "pause the run after its frame, or go on", pause_run, 0},
-    {"step", {'s', '.'}, "s  .", "step", "while paused: compute one frame", step_run, 0},
-    {"quit", {'q'}, "q", "quit", "stop after this frame (asks first), or leave", quit, 0},
-    {"leave", {'Q'}, "Q", NULL, "leave at once; whole frames are kept", leave, 0},
-    {"help", {'?', KEY_F(1)}, "?  F1", "help", "this page", open_page, PAGE_HELP},
-    {"log", {'g'}, "g", NULL, "what libraries have printed", open_page, PAGE_LOG},
-    {"turn-left", {'h', KEY_LEFT}, "h  left", NULL, "turn the camera to the left", turn_camera, -1},
-    {"turn-right", {'l', KEY_RIGHT}, "l  right", NULL, "turn the camera to the right", turn_camera, 1},
-    {"tilt-up", {'k', KEY_UP}, "k  up", NULL, "look from higher up", tilt_camera, 1},
-    {"tilt-down", {'j', KEY_DOWN}, "j  down", NULL, "look from lower down", tilt_camera, -1},
-    {"zoom-in", {'+', '='}, "+", NULL, "closer", zoom_camera, 1},
-    {"zoom-out", {'-', '_'}, "-", NULL, "further away", zoom_camera, -1},
-    {"reset", {'0'}, "0", NULL, "the camera as it was at the start", reset_camera, 0},
-    {"spin", {'a'}, "a", "spin", "let the camera turn by itself", spin_camera, 0},
-    {"mode", {'m'}, "m", "mode", "particles as braille, blocks or ASCII", change_mode, 0},
-    {"colours", {'c'}, "c", "colours", "the next colour map", change_palette, 0},
-    {"theme", {'t'}, "t", "theme", "dark, light or colour-blind", change_theme, 0},
-    {"histogram", {'L'}, "L", "log", "histogram linear or logarithmic", change_histogram, 0},
-    {"redraw", {'L' - '@'}, "Ctrl-L", NULL, "draw the screen anew", redraw, 0},
+    {.name = "help", .keys = {'?', KEY_F(1)}, .keys_shown = "?  F1", .hint = "help", .help = "this page", .handler = show_help,
+     .unlogged = true},
+    {.name = "palette", .keys = {':'}, .keys_shown = ":", .hint = "do", .help = "type an action; Tab completes", .handler = palette,
+     .argument = ARGUMENT_MAY, .asks = "ACTION", .unlogged = true},
+    {.name = "screen", .keys_shown = "F2 …", .help = "go to a screen", .handler = show_screen,
+     .argument = ARGUMENT_TEXT, .asks = "SCREEN", .complete = complete_screen, .unlogged = true},
+    {.name = "next-screen", .keys = {'\t', KEY_BTAB}, .keys_shown = "Tab", .help = "the next screen", .handler = next_screen,
+     .argument = ARGUMENT_MAY, .asks = "back", .unlogged = true},
+    {.name = "quit", .keys = {'q'}, .keys_shown = "q", .hint = "quit", .help = "stop after this frame (asks first), or leave", .handler = quit,
+     .argument = ARGUMENT_MAY, .asks = "stop"},
+    {.name = "leave", .keys = {'Q'}, .keys_shown = "Q", .help = "leave at once; whole frames are kept", .handler = leave},
+    {.name = "theme", .keys = {'t'}, .keys_shown = "t", .hint = "theme", .help = "dark, light or colour-blind", .handler = change_theme,
+     .argument = ARGUMENT_MAY, .asks = "THEME", .complete = complete_theme},
+    {.name = "log", .keys = {'g'}, .keys_shown = "g", .help = "what libraries have printed", .handler = show_log,
+     .unlogged = true},
+    {.name = "commands", .keys = {'G'}, .keys_shown = "G", .help = "what has been done: the command log", .handler = show_commands,
+     .unlogged = true},
+    {.name = "save-commands", .keys_shown = ":", .help = "write the command log to a file, for sunder --replay", .handler = save_commands,
+     .argument = ARGUMENT_TEXT, .asks = "FILE", .unlogged = true},
+    {.name = "redraw", .keys = {'L' - '@'}, .keys_shown = "Ctrl-L", .help = "draw the screen anew", .handler = redraw,
+     .unlogged = true},
 };
 
 const tui_action *tui_actions(int *count) {
@@ -186,14 +207,130 @@ const tui_action *tui_actions(int *count) {
     return table;
 }
 
-static bool answer(tui_app *app, int key) {
-    app->asking = false;
-    if (key == 'q' || key == 'y' || key == 'Y') {
-        stop_run(app);
+/* ---- finding ----------------------------------------------------------------------------------------------------- */
+
+bool actions_at(int index, action_place *out) {
+    int globals = (int)(sizeof table / sizeof *table), count;
+    if (index < globals) {
+        *out = (action_place){NULL, &table[index]};
         return true;
     }
-    /* Any other key is a no, except that leaving at once is a stronger yes. */
-    return key != 'Q';
+    index -= globals;
+    const tui_screen *const *list = tui_screens(&count);
+    for (int i = 0; i < count; i++) {
+        if (index < list[i]->action_count) {
+            *out = (action_place){list[i], &list[i]->actions[index]};
+            return true;
+        }
+        index -= list[i]->action_count;
+    }
+    return false;
+}
+
+void action_name(const action_place *place, char *out, size_t size) {
+    if (place->screen) snprintf(out, size, "%s.%s", place->screen->name, place->action->name);
+    else snprintf(out, size, "%s", place->action->name);
+}
+
+bool actions_find(const tui_app *app, const char *name, action_place *out) {
+    for (int i = 0; actions_at(i, out); i++) {
+        char full[SHELL_NAME];
+        action_name(out, full, sizeof full);
+        if (strcmp(full, name) == 0 || (out->screen && out->screen == app->screen && strcmp(out->action->name, name) == 0))
+            return true;
+    }
+    return false;
+}
+
+/* ---- doing ------------------------------------------------------------------------------------------------------- */
+
+void app_log_argument(tui_app *app, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(app->shell->log_argument, sizeof app->shell->log_argument, format, arguments);
+    va_end(arguments);
+    app->shell->log_argument_given = true;
+}
+
+void app_log_frame(tui_app *app, int64_t frame) {
+    app->shell->log_frame = frame;
+    app->shell->log_frame_given = true;
+}
+
+void app_log_nothing(tui_app *app) {
+    app->shell->log_nothing = true;
+}
+
+static status check_argument(const action_place *place, const char *argument, report *r) {
+    const tui_action *a = place->action;
+    char name[SHELL_NAME], *end;
+    action_name(place, name, sizeof name);
+    if (a->argument == ARGUMENT_NONE && argument[0]) return report_input(r, NULL, 0, name, "no argument", argument, NULL);
+    if (a->argument >= ARGUMENT_TEXT && !argument[0])
+        return report_input(r, NULL, 0, name, a->asks ? a->asks : "an argument", "nothing", NULL);
+    if (a->argument == ARGUMENT_NUMBER && (strtod(argument, &end), end == argument || *end))
+        return report_input(r, NULL, 0, name, "a number", argument, NULL);
+    return STATUS_OK;
+}
+
+static void note(tui_app *app, const action_place *place, const char *argument) {
+    tui_shell *shell = app->shell;
+    if (place->action->unlogged || shell->log_nothing) return;
+    char name[SHELL_NAME];
+    action_name(place, name, sizeof name);
+    const char *text = shell->log_argument_given ? shell->log_argument : argument;
+    if (shell->log_deferred) {
+        log_pend(app, name, text);
+    } else {
+        log_line(app, shell->log_frame_given ? shell->log_frame : log_frame_now(app), name, text);
+    }
+}
+
+static status do_place(tui_app *app, const action_place *place, const char *argument, report *r) {
+    tui_shell *shell = app->shell;
+    report_clear(r);
+    if (!argument[0] && place->action->preset) argument = place->action->preset;
+    status s = check_argument(place, argument, r);
+    bool outermost = shell->depth++ == 0;
+    if (outermost) shell->log_nothing = shell->log_argument_given = shell->log_frame_given = shell->log_deferred = false;
+    if (s == STATUS_OK && place->screen) {
+        (void)screen_state(app, place->screen, r);
+        s = r->code;
+    }
+    if (s == STATUS_OK) s = place->action->handler(app, argument, r);
+    if (s == STATUS_OK && outermost) note(app, place, argument);
+    shell->depth--;
+    if (s != STATUS_OK) app_fail(app, r);
+    app->dirty = true;
+    return s;
+}
+
+status app_do(tui_app *app, const char *name, const char *argument, report *r) {
+    action_place place;
+    if (actions_find(app, name, &place)) return do_place(app, &place, argument, r);
+    const char *nearest = NULL;
+    char names[256][SHELL_NAME];
+    const char *list[256];
+    int count = 0;
+    for (; count < 256 && actions_at(count, &place); count++) {
+        action_name(&place, names[count], SHELL_NAME);
+        list[count] = names[count];
+    }
+    nearest = name_nearest(name, list, count);
+    status s = report_input(r, NULL, 0, name, "an action (? lists them)", "none of that name", nearest);
+    app_fail(app, r);
+    return s;
+}
+
+/* ---- keys -------------------------------------------------------------------------------------------------------- */
+
+static void answer(tui_app *app, int key) {
+    tui_shell *shell = app->shell;
+    report unused;
+    shell->asking = false;
+    app->dirty = true;
+    if (key == 'y' || key == 'Y' || (shell->yes_key && key == shell->yes_key))
+        (void)app_do(app, shell->yes_action, shell->yes_argument, &unused);
 }
 
 static void scroll_by(tui_app *app, int lines) {
@@ -210,21 +347,59 @@ static bool scroll_page(tui_app *app, int key) {
     case KEY_PPAGE: scroll_by(app, -10); return true;
     case KEY_NPAGE: scroll_by(app, 10); return true;
     case 27:
-    case 'q': app->page = PAGE_RUN; return true;
+    case 'q': app->page = PAGE_NONE; return true;
     default: return false;
     }
 }
 
+static bool action_has_key(const tui_action *action, int key) {
+    for (int k = 0; k < ACTION_KEYS; k++)
+        if (action->keys[k] != 0 && action->keys[k] == key) return true;
+    return false;
+}
+
+/* The screen's own keys first: a screen may use a global action's key for what matters more there. */
+static bool find_key(const tui_app *app, int key, action_place *out) {
+    for (int i = 0; i < app->screen->action_count; i++) {
+        *out = (action_place){app->screen, &app->screen->actions[i]};
+        if (action_has_key(out->action, key)) return true;
+    }
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+        *out = (action_place){NULL, &table[i]};
+        if (action_has_key(out->action, key)) return true;
+    }
+    return false;
+}
+
+static bool screen_key(tui_app *app, int key) {
+    int count, index = key - KEY_F(2);
+    const tui_screen *const *list = tui_screens(&count);
+    if (index < 0 || index >= count) return false;
+    app_show(app, list[index]);
+    return true;
+}
+
 void actions_press(tui_app *app, int key) {
     app->dirty = true;
-    if (app->asking && answer(app, key)) return;
-    if (app->page != PAGE_RUN && scroll_page(app, key)) return;
-    for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
-        for (int k = 0; k < ACTION_KEYS; k++) {
-            if (table[i].keys[k] != 0 && table[i].keys[k] == key) {
-                table[i].handler(app, table[i].argument);
-                return;
-            }
-        }
+    report r;
+    if (app->shell->asking) {
+        /* Any other key is a no, except that leaving at once is a stronger yes. */
+        answer(app, key);
+        if (key != 'Q') return;
     }
+    if (app->shell->prompt.open) {
+        prompt_key(app, key);
+        return;
+    }
+    if (app->page != PAGE_NONE && scroll_page(app, key)) return;
+    if (app->page == PAGE_NONE && app->screen->key && app->screen->key(app, screen_state(app, app->screen, &r), key)) return;
+    action_place place;
+    if (screen_key(app, key) || !find_key(app, key, &place)) return;
+    if (place.action->argument >= ARGUMENT_TEXT && !place.action->preset) {
+        char name[SHELL_NAME];
+        action_name(&place, name, sizeof name);
+        app_prompt(app, name, "");
+        return;
+    }
+    (void)do_place(app, &place, place.action->handler == next_screen && key == KEY_BTAB ? "back" : "", &r);
 }

@@ -1,26 +1,27 @@
-/* Everything that a key can do, in one table: the keys, the key line and the help page are read from it. */
+/* The global actions, and how keys and names find theirs. */
 #ifndef SUNDER_TUI_ACTIONS_H
 #define SUNDER_TUI_ACTIONS_H
 
 #include "tui/app.h"
 
-enum { ACTION_KEYS = 3 };
-
-typedef struct tui_action {
-    const char *name;      /* unique; what a command log says */
-    int keys[ACTION_KEYS]; /* as curses gives them; 0: none */
-    const char *keys_shown;
-    const char *hint; /* a word for the key line, or NULL */
-    const char *help; /* a line for the help page */
-    void (*handler)(tui_app *app, int argument);
-    int argument;
-} tui_action;
-
-/* The table, in the order of the help page. */
+/* The actions that every screen has, in the order of the help page. */
 const tui_action *tui_actions(int *count);
 
-/* Does what `key` stands for now: an answer to a question, scrolling on a page, else its action. Unknown keys do
- * nothing. */
+/* An action and whose it is (NULL: global). */
+typedef struct action_place {
+    const tui_screen *screen;
+    const tui_action *action;
+} action_place;
+
+/* All actions of all screens and the global ones, by index; false after the last. */
+bool actions_at(int index, action_place *out);
+/* "run.pause", "quit", or the bare name of an action of the screen in view. */
+bool actions_find(const tui_app *app, const char *name, action_place *out);
+/* "run.pause" or "quit". */
+void action_name(const action_place *place, char *out, size_t size);
+
+/* Does what `key` stands for now: an answer to a question, typing, scrolling on a page, else its action. Unknown keys
+ * do nothing. */
 void actions_press(tui_app *app, int key);
 
 /* What SIGINT does (finish the frame and leave; the second time leave at the next step), and SIGTERM and SIGHUP (the

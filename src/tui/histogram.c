@@ -8,11 +8,11 @@
 
 enum { LABEL = 10, NUMBER = 9, WIDEST = 200 };
 
-int widget_histogram(tui_app *app, tui_area area, int row, int bins) {
+int widget_histogram(tui_app *app, const run_state *view, tui_area area, int row, int bins) {
     double share[SESSION_BINS], most = 0;
     view_rebin(app->shot->now.histogram, SESSION_BINS, share, bins);
     for (int i = 0; i < bins; i++) most = fmax(most, share[i]);
-    draw_heading(&app->theme, area, row, "particles by damage", app->log_histogram ? "log" : "linear");
+    draw_heading(&app->theme, area, row, "particles by damage", view->log_histogram ? "log" : "linear");
     int width = area.width - LABEL - NUMBER;
     if (width > WIDEST) width = WIDEST;
     /* On the logarithmic scale a single particle is the smallest mark. */
@@ -21,7 +21,7 @@ int widget_histogram(tui_app *app, tui_area area, int row, int bins) {
         char bar[VIEW_PLOT_BYTES(WIDEST)], percent[FORMAT_BYTES];
         draw_format(&app->theme, area, row + 1 + i, 0, STYLE_DIM, "%.2f–%.2f", (double)i / bins,
                     (double)(i + 1) / bins);
-        double fraction = app->log_histogram ? view_log_fraction(share[i], floor, fmax(most, 2 * floor))
+        double fraction = view->log_histogram ? view_log_fraction(share[i], floor, fmax(most, 2 * floor))
                           : most > 0         ? share[i] / most
                                              : 0;
         if (width > 0) {

@@ -11,10 +11,7 @@ static void first_key(const char *shown, char key[16]) {
     snprintf(key, 16, "%.*s", (int)length, shown);
 }
 
-void widget_keys(const tui_app *app, tui_area area) {
-    int count, column = 1;
-    const tui_action *actions = tui_actions(&count);
-    draw_blank(&app->theme, area, 0, STYLE_BAR);
+static int draw_hints(const tui_app *app, tui_area area, int column, const tui_action *actions, int count) {
     for (int i = 0; i < count; i++) {
         char key[16];
         if (!actions[i].hint) continue;
@@ -24,4 +21,22 @@ void widget_keys(const tui_app *app, tui_area area) {
         column = draw_text(&app->theme, area, 0, column, STYLE_BAR_STRONG, key);
         column = draw_text(&app->theme, area, 0, column + 1, STYLE_BAR, actions[i].hint) + 2;
     }
+    return column;
+}
+
+/* The global ones last, but they have their place: room for them is kept. */
+void widget_keys(const tui_app *app, tui_area area) {
+    int count, width = 0;
+    const tui_action *global = tui_actions(&count);
+    draw_blank(&app->theme, area, 0, STYLE_BAR);
+    for (int i = 0; i < count; i++) {
+        char key[16];
+        if (!global[i].hint) continue;
+        first_key(global[i].keys_shown, key);
+        width += draw_width(key) + draw_width(global[i].hint) + 3;
+    }
+    tui_area own = area;
+    own.width -= width;
+    int column = draw_hints(app, own, 1, app->screen->actions, app->screen->action_count);
+    draw_hints(app, area, column, global, count);
 }

@@ -1,3 +1,4 @@
+#include "tui/shell.h"
 #include "tui/widgets.h"
 
 #include <stdio.h>
@@ -22,18 +23,28 @@ static tui_style ended_text(const session_snapshot *s, char *text) {
 }
 
 /* What there is to say, the most pressing first. Writes it into text[MESSAGE_BYTES]. */
-static tui_style compose(const tui_app *app, int width, char *text) {
-    bool wide = width >= 70;
-    if (app->asking) {
-        snprintf(text, MESSAGE_BYTES, "%s",
-                 wide ? "Stop the run after this frame?  q or y: stop   any other key: go on"
-                      : "Stop?  q or y: yes   other keys: no");
+static tui_style compose(tui_app *app, int width, char *text) {
+    const tui_shell *shell = app->shell;
+    tui_style style = STYLE_TEXT;
+    report unused;
+    text[0] = '\0';
+    if (shell->asking) {
+        const char *also = shell->yes_key ? "%s  %c or y: yes   other keys: no" : "%s  y: yes   other keys: no";
+        if (shell->yes_key) snprintf(text, MESSAGE_BYTES, also, shell->question, shell->yes_key);
+        else snprintf(text, MESSAGE_BYTES, also, shell->question);
         return STYLE_WARN;
     }
     if (app->notice[0]) {
         snprintf(text, MESSAGE_BYTES, "%s", app->notice);
-        return STYLE_TEXT;
+        return app->notice_bad ? STYLE_BAD : STYLE_TEXT;
     }
+    if (app_starting(app)) {
+        snprintf(text, MESSAGE_BYTES, "%s", app->ended ? "The run is being set up …" : "The run before is finishing its frame …");
+        return STYLE_WARN;
+    }
+    if (app->screen->message && app->screen->message(app, screen_state(app, app->screen, &unused), text, MESSAGE_BYTES, &style))
+        return style;
+    if (!app->run) return STYLE_TEXT;
     if (app->ended) return ended_text(app->shot, text);
     if (app->abandoned) {
         snprintf(text, MESSAGE_BYTES, "Leaving at the next step.");
@@ -41,7 +52,7 @@ static tui_style compose(const tui_app *app, int width, char *text) {
     }
     if (app->stopping) {
         snprintf(text, MESSAGE_BYTES, "%s",
-                 wide ? "Finishing the frame, then leaving.  Ctrl-C or Q: leave without it"
+                 width >= 70 ? "Finishing the frame, then leaving.  Ctrl-C or Q: leave without it"
                       : "Finishing the frame.  Ctrl-C: now");
         return STYLE_WARN;
     }
@@ -73,13 +84,13 @@ static int wrap(char *text, int width, char *lines[MESSAGE_ROWS]) {
     return count;
 }
 
-int message_rows(const tui_app *app, int width) {
+int message_rows(tui_app *app, int width) {
     char text[MESSAGE_BYTES], *lines[MESSAGE_ROWS];
     compose(app, width, text);
     return wrap(text, width - 2, lines);
 }
 
-void widget_message(const tui_app *app, tui_area area) {
+void widget_message(tui_app *app, tui_area area) {
     char text[MESSAGE_BYTES], *lines[MESSAGE_ROWS];
     tui_style style = compose(app, area.width, text);
     int count = wrap(text, area.width - 2, lines);

@@ -2,7 +2,9 @@
 
 #include "tui/actions.h"
 #include "tui/capture.h"
+#include "tui/shell.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* Keeps the first shown line within 0 … total − rows. */
@@ -12,19 +14,34 @@ static void clamp_scroll(tui_app *app, int total, int rows) {
     if (app->scroll < 0) app->scroll = 0;
 }
 
-void widget_help(tui_app *app, tui_area area) {
+/* A line of the help page: of an action, or a heading. */
+static int help_lines(const tui_app *app, int line, tui_area area, int row) {
     int count;
-    const tui_action *actions = tui_actions(&count);
-    bool more = count > area.height - 1;
-    draw_heading(&app->theme, area, 0, "keys", more ? "up and down scroll, q closes" : "q closes");
-    int rows = area.height - 1;
-    clamp_scroll(app, count, rows);
-    for (int i = 0; i < rows && i + app->scroll < count; i++) {
-        const tui_action *a = &actions[i + app->scroll];
-        draw_text(&app->theme, area, i + 1, 1, STYLE_STRONG, a->keys_shown);
-        draw_text(&app->theme, area, i + 1, 11, STYLE_TEXT, a->help);
-        if (area.width >= 70) draw_right(&app->theme, area, i + 1, area.width - 1, STYLE_DIM, a->name);
+    const tui_action *global = tui_actions(&count), *a = NULL;
+    const tui_screen *s = app->screen;
+    if (line >= 0 && line < s->action_count) a = &s->actions[line];
+    int beyond = line - s->action_count - 1;
+    if (beyond >= 0 && beyond < count) a = &global[beyond];
+    if (a && row >= 0) {
+        char name[64];
+        draw_text(&app->theme, area, row, 1, STYLE_STRONG, a->keys_shown);
+        draw_text(&app->theme, area, row, 11, STYLE_TEXT, a->help);
+        if (beyond >= 0) snprintf(name, sizeof name, "%s", a->name);
+        else snprintf(name, sizeof name, "%s.%s", s->name, a->name);
+        if (area.width >= 70) draw_right(&app->theme, area, row, area.width - 1, STYLE_DIM, name);
+    } else if (row >= 0) {
+        draw_heading(&app->theme, area, row, "on every screen", NULL);
     }
+    return s->action_count + 1 + count;
+}
+
+static void draw_help(tui_app *app, tui_area area) {
+    int total = help_lines(app, -1, area, -1), rows = area.height - 1;
+    char heading[64];
+    snprintf(heading, sizeof heading, "keys · %s", app->screen->title);
+    draw_heading(&app->theme, area, 0, heading, total > rows ? "up and down scroll, q closes" : "q closes");
+    clamp_scroll(app, total, rows);
+    for (int i = 0; i < rows && i + app->scroll < total; i++) help_lines(app, i + app->scroll, area, i + 1);
 }
 
 static int count_lines(const char *text) {
@@ -35,14 +52,8 @@ static int count_lines(const char *text) {
     return lines;
 }
 
-void widget_log(tui_app *app, tui_area area) {
-    static char text[CAPTURE_KEPT + 1];
-    capture_tail(text);
-    draw_heading(&app->theme, area, 0, "printed by libraries", "up and down scroll, q closes");
-    if (!text[0]) {
-        draw_text(&app->theme, area, 1, 1, STYLE_DIM, "Nothing so far.");
-        return;
-    }
+/* Lines of text, which is cut into them; the page follows its end until it is scrolled. */
+static void draw_lines(tui_app *app, tui_area area, char *text) {
     int total = count_lines(text), rows = area.height - 1;
     if (app->at_end) app->scroll = total;
     clamp_scroll(app, total, rows);
@@ -54,5 +65,32 @@ void widget_log(tui_app *app, tui_area area) {
         start[length] = '\0';
         if (line >= app->scroll) draw_text(&app->theme, area, line - app->scroll + 1, 1, STYLE_TEXT, start);
         start = next;
+    }
+}
+
+static void draw_printed(tui_app *app, tui_area area) {
+    static char text[CAPTURE_KEPT + 1];
+    capture_tail(text);
+    draw_heading(&app->theme, area, 0, "printed by libraries", "up and down scroll, q closes");
+    if (text[0]) draw_lines(app, area, text);
+    else draw_text(&app->theme, area, 1, 1, STYLE_DIM, "Nothing so far.");
+}
+
+/* The last part of the log: all of it is in the file. */
+static void draw_commands(tui_app *app, tui_area area) {
+    static char text[CAPTURE_KEPT + 1];
+    const command_log *log = &app->shell->log;
+    const char *from = log->used > CAPTURE_KEPT ? log->text + log->used - CAPTURE_KEPT : log->text;
+    snprintf(text, sizeof text, "%s", from);
+    draw_heading(&app->theme, area, 0, "commands", "up and down scroll, q closes");
+    draw_lines(app, area, text);
+}
+
+void widget_page(tui_app *app, tui_area area) {
+    switch (app->page) {
+    case PAGE_HELP: draw_help(app, area); break;
+    case PAGE_LOG: draw_printed(app, area); break;
+    case PAGE_COMMANDS: draw_commands(app, area); break;
+    case PAGE_NONE: break;
     }
 }

@@ -13,7 +13,7 @@ static int bars_that_fit(int rows) {
     return 0;
 }
 
-void widget_panel(tui_app *app, tui_area area) {
+void widget_panel(tui_app *app, const run_state *view, tui_area area) {
     enum { FIXED = 1 + 5 + 4 + 4 + 1, GAPS = 3 }; /* progress, numbers, energy, damage, the histogram's heading */
     bool roomy = area.height >= 34;
     int effects = roomy ? 4 : 0;
@@ -27,11 +27,11 @@ void widget_panel(tui_app *app, tui_area area) {
     row += widget_numbers(app, area, row) + gap[0];
     row += widget_energy(app, area, row, roomy) + gap[1];
     row += widget_damage(app, area, row) + gap[2];
-    if (bars > 0) row += widget_histogram(app, area, row, bars);
+    if (bars > 0) row += widget_histogram(app, view, area, row, bars);
     if (roomy) widget_effects(app, area, row + 1, area.height - row - 1);
 }
 
-void widget_strip(tui_app *app, tui_area area) {
+void widget_strip(tui_app *app, const run_state *view, tui_area area) {
     const session_snapshot *s = app->shot;
     char a[FORMAT_BYTES], b[FORMAT_BYTES];
     int row = widget_progress(app, area, 0);
@@ -45,5 +45,5 @@ void widget_strip(tui_app *app, tui_area area) {
     row += 2;
     if (area.height >= row + 4) row += widget_energy(app, area, row, false);
     int bars = app_has_damage(app) ? bars_that_fit(area.height - row - 1) : 0;
-    if (bars > 0) widget_histogram(app, area, row, bars);
+    if (bars > 0) widget_histogram(app, view, area, row, bars);
 }

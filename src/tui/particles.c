@@ -34,14 +34,14 @@ static bool spread(const session_snapshot *s, int axis, float *low, float *high)
 
 /* The first frame's box is the base. It grows in jumps of a tenth, so that the scale rests between them, and to four
  * times its size at most. */
-void particles_follow(tui_app *app) {
+void particles_follow(const tui_app *app, run_state *view) {
     const session_snapshot *s = app->shot;
     if (s->point_count == 0) return;
-    if (!app->fitted) {
-        memcpy(app->fit_minimum, s->bounds_minimum, sizeof app->fit_minimum);
-        memcpy(app->fit_maximum, s->bounds_maximum, sizeof app->fit_maximum);
-        app->radius = view_particle_radius(s->position, s->point_count);
-        app->fitted = true;
+    if (!view->fitted) {
+        memcpy(view->fit_minimum, s->bounds_minimum, sizeof view->fit_minimum);
+        memcpy(view->fit_maximum, s->bounds_maximum, sizeof view->fit_maximum);
+        view->radius = view_particle_radius(s->position, s->point_count);
+        view->fitted = true;
     }
     float longest = 0;
     for (int i = 0; i < 3; i++) longest = fmaxf(longest, s->bounds_maximum[i] - s->bounds_minimum[i]);
@@ -49,58 +49,58 @@ void particles_follow(tui_app *app) {
         float low, high, step = 0.1f * longest;
         if (!spread(s, i, &low, &high)) return;
         float lowest = s->bounds_minimum[i] - 1.5f * longest, highest = s->bounds_maximum[i] + 1.5f * longest;
-        if (low < app->fit_minimum[i]) app->fit_minimum[i] = fmaxf(low - step, lowest);
-        if (high > app->fit_maximum[i]) app->fit_maximum[i] = fminf(high + step, highest);
+        if (low < view->fit_minimum[i]) view->fit_minimum[i] = fmaxf(low - step, lowest);
+        if (high > view->fit_maximum[i]) view->fit_maximum[i] = fminf(high + step, highest);
     }
-    view_camera_fit(&app->camera, app->fit_minimum, app->fit_maximum);
+    view_camera_fit(&view->camera, view->fit_minimum, view->fit_maximum);
 }
 
 /* ---- the picture ------------------------------------------------------------------------------------------------- */
 
-static status ensure_cells(tui_app *app, int width, int height, report *r) {
+static status ensure_cells(run_state *view, int width, int height, report *r) {
     size_t wanted = (size_t)width * (size_t)height;
-    app->cells_width = width;
-    app->cells_height = height;
-    if (wanted <= app->cell_capacity) return STATUS_OK;
-    memory_free(app->cells, app->cell_capacity * sizeof(view_cell));
-    app->cells = memory_allocate_array(wanted, sizeof(view_cell));
-    app->cell_capacity = app->cells ? wanted : 0;
-    if (app->cells) return STATUS_OK;
-    app->cells_width = app->cells_height = 0;
+    view->cells_width = width;
+    view->cells_height = height;
+    if (wanted <= view->cell_capacity) return STATUS_OK;
+    memory_free(view->cells, view->cell_capacity * sizeof(view_cell));
+    view->cells = memory_allocate_array(wanted, sizeof(view_cell));
+    view->cell_capacity = view->cells ? wanted : 0;
+    if (view->cells) return STATUS_OK;
+    view->cells_width = view->cells_height = 0;
     return report_set(r, STATUS_SYSTEM, "out of memory for the picture");
 }
 
 /* Braille dots have one colour a cell, so that light has to show in their density; blocks carry it in their colour. */
-static view_ink choose_ink(const tui_app *app) {
+static view_ink choose_ink(const tui_app *app, const run_state *view) {
     if (app->theme.colours == 0) return VIEW_INK_VALUE;
-    return app->mode == VIEW_HALF && app->theme.colours == 256 ? VIEW_INK_SOLID : VIEW_INK_LIGHT;
+    return view->mode == VIEW_HALF && app->theme.colours == 256 ? VIEW_INK_SOLID : VIEW_INK_LIGHT;
 }
 
-status particles_prepare(tui_app *app, tui_area area, report *r) {
+status particles_prepare(const tui_app *app, run_state *view, tui_area area, report *r) {
     if (area.width < 1 || area.height < 1) return STATUS_OK;
-    if (!app->picture_old && app->cells_width == area.width && app->cells_height == area.height) return STATUS_OK;
+    if (!view->picture_old && view->cells_width == area.width && view->cells_height == area.height) return STATUS_OK;
     const session_snapshot *s = app->shot;
-    status failed = ensure_cells(app, area.width, area.height, r);
+    status failed = ensure_cells(view, area.width, area.height, r);
     if (failed) return failed;
-    failed = view_canvas_resize(&app->canvas, area.width * view_mode_pixels_x(app->mode),
-                                area.height * view_mode_pixels_y(app->mode), r);
+    failed = view_canvas_resize(&view->canvas, area.width * view_mode_pixels_x(view->mode),
+                                area.height * view_mode_pixels_y(view->mode), r);
     if (failed) {
-        app->cells_width = app->cells_height = 0;
+        view->cells_width = view->cells_height = 0;
         return failed;
     }
-    view_projection p = view_camera_projection(&app->camera, (float)app->canvas.width, (float)app->canvas.height);
-    view_canvas_draw(&app->canvas, &p, s->position, s->scalar, s->point_count, app->radius);
-    view_canvas_light(&app->canvas, app->radius * p.scale);
-    view_raster(&app->canvas, app->mode, choose_ink(app), app->cells);
-    app->picture_old = false;
+    view_projection p = view_camera_projection(&view->camera, (float)view->canvas.width, (float)view->canvas.height);
+    view_canvas_draw(&view->canvas, &p, s->position, s->scalar, s->point_count, view->radius);
+    view_canvas_light(&view->canvas, view->radius * p.scale);
+    view_raster(&view->canvas, view->mode, choose_ink(app, view), view->cells);
+    view->picture_old = false;
     return STATUS_OK;
 }
 
 /* Blocks have a colour for each half where there are enough of them, darkened by the light; all else has its value's
  * ink. */
-static tui_ink cell_ink(tui_app *app, const view_cell *cell) {
+static tui_ink cell_ink(tui_app *app, const run_state *view, const view_cell *cell) {
     tui_theme *t = &app->theme;
-    if (choose_ink(app) != VIEW_INK_SOLID) return theme_value(t, fmaxf(cell->value[0], cell->value[1]));
+    if (choose_ink(app, view) != VIEW_INK_SOLID) return theme_value(t, fmaxf(cell->value[0], cell->value[1]));
     int colour[2];
     for (int i = 0; i < 2; i++)
         colour[i] = cell->value[i] < 0 ? -1 : theme_colour(t, cell->value[i], 0.35f + 0.65f * cell->shade[i]);
@@ -109,13 +109,13 @@ static tui_ink cell_ink(tui_app *app, const view_cell *cell) {
 }
 
 /* Camera, mode and colours under the picture: as many of them as fit, none cut in half. */
-static void draw_caption(const tui_app *app, tui_area area) {
+static void draw_caption(const tui_app *app, const run_state *view, tui_area area) {
     static const float degrees = 57.29578f;
     char parts[5][32];
-    snprintf(parts[0], sizeof parts[0], "yaw %+4.0f", (double)(app->camera.yaw * degrees));
-    snprintf(parts[1], sizeof parts[1], "pitch %+3.0f", (double)(app->camera.pitch * degrees));
-    snprintf(parts[2], sizeof parts[2], "zoom %5.2f", (double)app->camera.zoom);
-    snprintf(parts[3], sizeof parts[3], "%s", view_mode_name(app->mode));
+    snprintf(parts[0], sizeof parts[0], "yaw %+4.0f", (double)(view->camera.yaw * degrees));
+    snprintf(parts[1], sizeof parts[1], "pitch %+3.0f", (double)(view->camera.pitch * degrees));
+    snprintf(parts[2], sizeof parts[2], "zoom %5.2f", (double)view->camera.zoom);
+    snprintf(parts[3], sizeof parts[3], "%s", view_mode_name(view->mode));
     snprintf(parts[4], sizeof parts[4], "%s", app->theme.colours ? view_palette_name(app->theme.palette) : "");
     int column = 1;
     for (int i = 0; i < 5; i++) {
@@ -124,24 +124,24 @@ static void draw_caption(const tui_app *app, tui_area area) {
     }
 }
 
-void widget_particles(tui_app *app, tui_area area) {
+void widget_particles(tui_app *app, run_state *view, tui_area area) {
     tui_area picture = {area.y, area.x, area.height - (area.height > 6), area.width};
     if (picture.height < 1 || picture.width < 1) return;
     report r;
     if (app->shot->point_count == 0) {
-        const char *text = app->ended ? "no particles" : "the scene is being set up …";
+        const char *text = !app->run ? "no run; F2 lists scenes to start" : app->ended ? "no particles" : "the scene is being set up …";
         draw_text(&app->theme, picture, picture.height / 2, (picture.width - draw_width(text)) / 2, STYLE_DIM, text);
         return;
     }
-    if (particles_prepare(app, picture, &r) != STATUS_OK) {
+    if (particles_prepare(app, view, picture, &r) != STATUS_OK) {
         draw_text(&app->theme, picture, 0, 0, STYLE_BAD, r.message);
         return;
     }
     for (int row = 0; row < picture.height; row++) {
         for (int column = 0; column < picture.width; column++) {
-            const view_cell *cell = &app->cells[(size_t)row * (size_t)picture.width + (size_t)column];
-            if (cell->glyph != ' ') draw_glyph(picture, row, column, cell_ink(app, cell), cell->glyph);
+            const view_cell *cell = &view->cells[(size_t)row * (size_t)picture.width + (size_t)column];
+            if (cell->glyph != ' ') draw_glyph(picture, row, column, cell_ink(app, view, cell), cell->glyph);
         }
     }
-    if (area.height > picture.height) draw_caption(app, area);
+    if (area.height > picture.height) draw_caption(app, view, area);
 }

@@ -1,4 +1,4 @@
-/* The live screen: watches a session until it ends or its user leaves.
+/* The workbench: screens on a terminal around the run that is on.
  *
  * Curses, keys and signals belong to the calling thread; the session simulates on threads of its own and never waits
  * for the screen. The terminal is given back on every way out: returning, suspending (Ctrl-Z), SIGTERM, SIGHUP, exit()
@@ -31,6 +31,7 @@ typedef struct tui_options {
     bool ascii;  /* only ASCII characters; always so when the locale's character set is not UTF-8 */
     bool log_histogram;
     bool leave_at_end; /* else the screen stays after the run until its user quits */
+    const char *database; /* of the ledger, for runs that are started; NULL: the default one */
 } tui_options;
 
 /* Everything automatic, a linear histogram, staying at the end. */
@@ -40,12 +41,12 @@ tui_options tui_options_default(void);
  * a phrase that follows "the live view is off: ". */
 bool tui_possible(const char **why);
 
-/* Shows `s` until it has ended and its user has left, or until its user makes it stop. Returns the session's outcome
- * with its report, as session_outcome does; the session has ended then, and is still the caller's to destroy. What the
- * process wrote to its standard streams meanwhile is repeated on standard error afterwards. Keys: space, s, q …, all
- * listed on the page behind "?". First Ctrl-C, SIGTERM, SIGHUP: the frame is finished, then the screen left; second
- * Ctrl-C: left at the next step. Errors of its own: STATUS_SYSTEM when the terminal cannot be used or memory is out;
- * the session then goes on running. */
-status tui_watch(session *s, const tui_options *options, report *r);
+/* Opens the workbench with `*run` in view (NULL: none) until its user leaves. Runs may be started and ended meanwhile:
+ * *run is the one in view at the end, ended, and the caller's to destroy (NULL: none); those before it have been. Returns
+ * its outcome with its report, as session_outcome does; STATUS_OK without one. What the process wrote to its standard
+ * streams meanwhile is repeated on standard error afterwards. First Ctrl-C, SIGTERM, SIGHUP: the frame is finished, then
+ * the screen left; second Ctrl-C: left at the next step. Errors of its own: STATUS_SYSTEM when the terminal cannot be
+ * used or memory is out; *run then goes on running. */
+status tui_workbench(session **run, const tui_options *options, report *r);
 
 #endif

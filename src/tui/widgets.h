@@ -3,19 +3,19 @@
 #ifndef SUNDER_TUI_WIDGETS_H
 #define SUNDER_TUI_WIDGETS_H
 
-#include "tui/app.h"
+#include "tui/run.h"
 
-/* title.c: program, scene, variant, run id, state. */
+/* title.c: program, screens, scene, variant, run id, state. */
 void widget_title(const tui_app *app, tui_area area);
 
 /* particles.c: the picture of the particles, and the camera that follows them. */
-status particles_prepare(tui_app *app, tui_area area, report *r); /* makes the picture anew if it is old */
-void particles_follow(tui_app *app);                              /* after a new snapshot */
-void widget_particles(tui_app *app, tui_area area);
+status particles_prepare(const tui_app *app, run_state *view, tui_area area, report *r); /* makes the picture anew if it is old */
+void particles_follow(const tui_app *app, run_state *view);                              /* after a new snapshot */
+void widget_particles(tui_app *app, run_state *view, tui_area area);
 
 /* panel.c: the statistics, stacked for a tall area or in few lines for a flat one. */
-void widget_panel(tui_app *app, tui_area area);
-void widget_strip(tui_app *app, tui_area area);
+void widget_panel(tui_app *app, const run_state *view, tui_area area);
+void widget_strip(tui_app *app, const run_state *view, tui_area area);
 
 /* numbers.c: progress and the run's figures. */
 int widget_progress(const tui_app *app, tui_area area, int row);
@@ -29,21 +29,20 @@ void widget_broken_line(const tui_app *app, tui_area area, int row);
 bool app_has_damage(const tui_app *app);
 
 /* histogram.c: the share of particles by damage, in `bins` bars (a divisor of SESSION_BINS), with a heading. */
-int widget_histogram(tui_app *app, tui_area area, int row, int bins);
+int widget_histogram(tui_app *app, const run_state *view, tui_area area, int row, int bins);
 
 /* message.c: a question, a passing notice, a failure, a warning, or how it ended. */
-int message_rows(const tui_app *app, int width); /* how many rows it asks for: 1 to 3 */
-void widget_message(const tui_app *app, tui_area area);
+int message_rows(tui_app *app, int width); /* how many rows it asks for: 1 to 3 */
+void widget_message(tui_app *app, tui_area area);
 
 /* keys.c: the key line. */
 void widget_keys(const tui_app *app, tui_area area);
 
-/* pages.c: help and printed text. They clamp app->scroll. */
-void widget_help(tui_app *app, tui_area area);
-void widget_log(tui_app *app, tui_area area);
+/* pages.c: help, printed text, the command log. They clamp app->scroll. */
+void widget_page(tui_app *app, tui_area area);
 
 /* layout.c: the whole screen. */
-void screen_draw(tui_app *app);
+void workbench_draw(tui_app *app);
 
 enum { SCREEN_MINIMUM_WIDTH = 40, SCREEN_MINIMUM_HEIGHT = 10 };
 

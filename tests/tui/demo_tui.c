@@ -89,7 +89,7 @@ int main(int argc, char **argv) {
     pthread_t thread;
     if (o.exit_after > 0 && pthread_create(&thread, NULL, exit_later, &o.exit_after) != 0) return 1;
     report r;
-    status outcome = tui_watch(s, &o.tui, &r);
+    status outcome = tui_workbench(&s, &o.tui, &r);
     session_snapshot last = {0};
     session_poll(s, &last);
     const session_sample *now = &last.now;

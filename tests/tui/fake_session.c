@@ -372,3 +372,10 @@ void session_destroy(session *s) {
     memory_free(s->rest, 3 * (size_t)s->options.particles * sizeof(float));
     memory_free(s, sizeof *s);
 }
+
+/* The program's runs cannot be started here. */
+status session_start(const session_options *options, session **out, script_reports *reports) {
+    *out = NULL;
+    reports->count = 1;
+    return report_input(&reports->items[0], options->scene_path, 0, NULL, "a scene file", "a synthetic session only", NULL);
+}

@@ -1,59 +1,35 @@
-#include "tui/tui.h"
-
+/* The workbench's loop: signals, keys, the run's state, time, drawing. */
 #include "base/memory.h"
 #include "tui/actions.h"
 #include "tui/capture.h"
+#include "tui/shell.h"
 #include "tui/signals.h"
 #include "tui/terminal.h"
 #include "tui/widgets.h"
 
-#include <errno.h>
 #include <math.h>
 #include <poll.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 static const double frame_time = 1.0 / 30; /* s; at most 30 redraws a second, and as many looks at the session */
 static const double key_delay = 0.045;     /* s; the longest that a key's effect may wait for its redraw */
 static const double load_share = 0.1;      /* of a core that drawing may take from the simulation */
-static const double notice_time = 4;       /* s */
-static const float spin_speed = 0.5f;      /* rad/s */
 enum { KEYS_A_TURN = 256 };
 
 tui_options tui_options_default(void) {
     return (tui_options){.theme = TUI_THEME_AUTO, .palette = TUI_AUTO, .mode = TUI_AUTO, .colours = TUI_AUTO};
 }
 
-double app_clock(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-void app_notice(tui_app *app, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(app->notice, sizeof app->notice, format, arguments);
-    va_end(arguments);
-    app->notice_until = app_clock() + notice_time;
-    app->dirty = true;
-}
-
 /* When things happen, in seconds of app_clock. */
 typedef struct pace {
-    double next_draw, last_turn; /* of the camera */
-    bool hung_up;                /* the terminal is gone */
+    double next_draw;
+    bool hung_up; /* the terminal is gone */
 } pace;
 
 /* ---- what comes in ----------------------------------------------------------------------------------------------- */
 
 static void wait_for_input(const tui_app *app, pace *p) {
-    double now = app_clock(), wait = app->ended ? 1.0 : frame_time;
-    if (app->spinning) wait = fmin(wait, frame_time);
+    double now = app_clock(), wait = frame_time;
     if (app->notice[0]) wait = fmin(wait, app->notice_until - now);
     if (app->dirty) wait = fmin(wait, p->next_draw - now);
     struct pollfd inputs[2] = {{.fd = signals_descriptor(), .events = POLLIN},
@@ -72,7 +48,7 @@ static void take_signals(tui_app *app) {
         case SIGNAL_CONTINUE: terminal_retake(); break;
         case SIGNAL_RESIZE: terminal_resize(); break;
         }
-        app->dirty = app->picture_old = true;
+        app->dirty = true;
     }
 }
 
@@ -84,42 +60,49 @@ static void take_keys(tui_app *app, pace *p) {
     for (int i = 0; i < KEYS_A_TURN && !app->leaving; i++) {
         int key = getch();
         if (key == ERR) return;
-        if (key == KEY_RESIZE) {
-            app->dirty = app->picture_old = true;
-        } else {
-            actions_press(app, key);
-            p->next_draw = fmin(p->next_draw, app_clock() + key_delay);
-        }
+        app->dirty = true;
+        if (key == KEY_RESIZE) continue;
+        actions_press(app, key);
+        p->next_draw = fmin(p->next_draw, app_clock() + key_delay);
     }
+}
+
+static void tell_screens(tui_app *app) {
+    int count;
+    const tui_screen *const *list = tui_screens(&count);
+    for (int i = 0; i < count; i++)
+        if (app->opened[i] && list[i]->follow) list[i]->follow(app, app->states[i], false);
 }
 
 static void take_state(tui_app *app) {
-    /* Asked before polling: a session that has ended has published its last state. */
-    bool ended = session_wait(app->run, 0);
-    if (session_poll(app->run, app->shot)) {
-        particles_follow(app);
-        app->dirty = app->picture_old = true;
+    if (!app->run) {
+        app->ended = true;
+    } else {
+        /* Asked before polling: a session that has ended has published its last state. */
+        bool ended = session_wait(app->run, 0);
+        if (session_poll(app->run, app->shot)) {
+            tell_screens(app);
+            app->dirty = true;
+        }
+        if (ended && !app->ended) {
+            app->ended = app->dirty = true;
+            log_settle(app);
+        }
     }
-    if (ended && !app->ended) {
-        app->ended = app->dirty = true;
-        app->asking = false;
-    }
-    if (app->ended && app->leave_at_end) app->leaving = true;
+    start_tick(app);
+    if (app->ended && app->leave_at_end && !app_starting(app)) app->leaving = true;
 }
 
-static void take_time(tui_app *app, pace *p) {
+static void take_time(tui_app *app) {
     double now = app_clock();
+    int count;
+    const tui_screen *const *list = tui_screens(&count);
     if (app->notice[0] && now >= app->notice_until) {
         app->notice[0] = '\0';
         app->dirty = true;
     }
-    if (app->spinning && now - p->last_turn >= frame_time) {
-        view_camera_orbit(&app->camera, spin_speed * (float)fmin(now - p->last_turn, 0.5), 0);
-        app->dirty = app->picture_old = true;
-        p->last_turn = now;
-    } else if (!app->spinning) {
-        p->last_turn = now;
-    }
+    for (int i = 0; i < count; i++)
+        if (app->opened[i] && list[i]->tick) list[i]->tick(app, app->states[i], now);
     int64_t printed = capture_size();
     if (printed > app->printed && app->page != PAGE_LOG)
         app_notice(app, "A library has printed something; g shows it.");
@@ -131,19 +114,21 @@ static void draw_if_due(tui_app *app, pace *p) {
     double start = app_clock();
     if (!app->dirty || start < p->next_draw) return;
     app->dirty = false;
-    screen_draw(app);
+    if (app->redraw) clearok(curscr, TRUE);
+    app->redraw = false;
+    workbench_draw(app);
     double cost = app_clock() - start;
     p->next_draw = start + fmax(frame_time, cost / load_share);
 }
 
 static void loop(tui_app *app) {
-    pace p = {.last_turn = app_clock()};
+    pace p = {0};
     app->dirty = true;
     while (!app->leaving) {
         take_signals(app);
         take_keys(app, &p);
         take_state(app);
-        take_time(app, &p);
+        take_time(app);
         if (app->leaving) break;
         draw_if_due(app, &p);
         wait_for_input(app, &p);
@@ -152,47 +137,60 @@ static void loop(tui_app *app) {
 
 /* ---- beginning and end ------------------------------------------------------------------------------------------- */
 
-static view_mode finest_mode(void) {
-    const char *name = getenv("TERM");
-    /* The Linux console's fonts have blocks but no braille. */
-    return name && strcmp(name, "linux") == 0 ? VIEW_HALF : VIEW_BRAILLE;
-}
-
-static status app_open(tui_app *app, const tui_options *options, bool unicode, report *r) {
-    bool ascii = options->ascii || !unicode;
-    status s = theme_open(&app->theme, options->theme, options->colours, ascii, r);
+static status app_open(tui_app *app, session *run, bool unicode, report *r) {
+    status s = theme_open(&app->theme, app->options.theme, app->options.colours, app->options.ascii || !unicode, r);
     if (s != STATUS_OK) return s;
     app->shot = memory_allocate(sizeof *app->shot);
-    if (!app->shot) return report_set(r, STATUS_SYSTEM, "out of memory for the live view");
-    app->mode = ascii ? VIEW_ASCII : options->mode == TUI_AUTO ? finest_mode() : (view_mode)options->mode;
-    if (options->palette != TUI_AUTO) app->theme.palette = (view_palette)options->palette;
-    app->camera = view_camera_default();
-    app->log_histogram = options->log_histogram;
-    app->leave_at_end = options->leave_at_end;
-    app->picture_old = true;
+    app->shell = memory_allocate(sizeof *app->shell);
+    if (!app->shot || !app->shell) return report_set(r, STATUS_SYSTEM, "out of memory for the workbench");
+    if (app->options.palette != TUI_AUTO) app->theme.palette = (view_palette)app->options.palette;
+    app->leave_at_end = app->options.leave_at_end && run;
+    log_open(app);
+    app_switch_run(app, run);
+    app_show(app, &screen_run);
     return STATUS_OK;
 }
 
-static void app_close(tui_app *app) {
+static void close_screens(tui_app *app) {
+    int count;
+    const tui_screen *const *list = tui_screens(&count);
+    for (int i = 0; i < count; i++)
+        if (app->opened[i] && list[i]->close) list[i]->close(app, app->states[i]);
+}
+
+/* The terminal has been given back: what the run still does is waited for without it. */
+static void app_close(tui_app *app, status *outcome, report *r) {
+    if (app->shell) start_close(app);
+    if (app->run) {
+        session_wait(app->run, -1);
+        session_poll(app->run, app->shot);
+        app->ended = true;
+        *outcome = session_outcome(app->run, r);
+    }
+    close_screens(app);
+    if (app->shell) log_close(app);
     if (app->shot) session_snapshot_free(app->shot);
     memory_free(app->shot, sizeof *app->shot);
-    memory_free(app->cells, app->cell_capacity * sizeof(view_cell));
-    view_canvas_free(&app->canvas);
+    memory_free(app->shell, sizeof *app->shell);
     theme_close(&app->theme);
 }
 
-status tui_watch(session *s, const tui_options *options, report *r) {
-    tui_app app = {.run = s};
+status tui_workbench(session **run, const tui_options *options, report *r) {
+    tui_app app = {.options = *options};
     bool unicode;
-    status failed = terminal_open(&unicode, r);
+    report_clear(r);
+    status failed = terminal_open(&unicode, r), outcome = STATUS_OK;
     if (failed != STATUS_OK) return failed;
-    failed = app_open(&app, options, unicode, r);
+    failed = app_open(&app, *run, unicode, r);
     if (failed == STATUS_OK) loop(&app);
     terminal_close();
-    app_close(&app);
+    report ended;
+    report_clear(&ended);
+    app_close(&app, &outcome, &ended);
+    *run = app.run ? app.run : *run;
     capture_replay();
     capture_forget();
     if (failed != STATUS_OK) return failed;
-    session_wait(s, -1);
-    return session_outcome(s, r);
+    *r = ended;
+    return outcome;
 }

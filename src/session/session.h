@@ -153,6 +153,10 @@ bool session_wait(session *s, double seconds);
 status session_outcome(session *s, report *r);
 const char *session_summary(session *s);
 
+/* How this run was asked for, as options for another one like it: scene, recipe, settings, precision, frames and how it is kept; a folder
+ * of its own, from the beginning, without turns. Strings are the session's. */
+void session_request(const session *s, session_options *out);
+
 /* A run's identity, as the ledger has it in scene_hash: of every source and every resolved parameter; hexadecimal. */
 void sources_hash(const script *from, char hash[32]);
 

@@ -8,42 +8,12 @@
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
-#include <time.h>
 
 static const struct option long_options[] = {
     {"set", required_argument, NULL, 's'},     {"recipe", required_argument, NULL, 'r'}, {"json", no_argument, NULL, 'j'},
     {"precision", required_argument, NULL, 'p'}, {"threads", required_argument, NULL, 't'}, {NULL, 0, NULL, 0}};
 
-typedef struct cost {
-    double seconds_per_step, steps, seconds;
-} cost;
-
-/* The cost is measured, not guessed: a few steps of this very plan, then scaled to the scene's frames at its first step length. */
-static status measure_cost(simulation *s, const scene *scene_data, cost *c, report *r) {
-    const simulation_plan *plan = simulation_get_plan(s);
-    struct timespec start, now;
-    int steps = 0;
-    clock_gettime(CLOCK_MONOTONIC, &start);
-    double elapsed = 0;
-    while (steps < 50 && elapsed < 0.5) {
-        status code = simulation_step(s, plan->dt, r);
-        if (code != STATUS_OK) return code;
-        steps++;
-        clock_gettime(CLOCK_MONOTONIC, &now);
-        elapsed = (double)(now.tv_sec - start.tv_sec) + 1e-9 * (double)(now.tv_nsec - start.tv_nsec);
-    }
-    c->seconds_per_step = elapsed / steps;
-    c->steps = (double)scene_frames(scene_data) / scene_data->fps / plan->dt;
-    c->seconds = c->steps * c->seconds_per_step;
-    return STATUS_OK;
-}
-
-/* Whether an effect could be on in this scene: those of the other engine could not, but for the scene's own. */
-static bool concerns(const simulation_plan *p, int e) {
-    return p->effects[e]->scope == SCOPE_SCENE || (p->effects[e]->engine == ENGINE_SHEET) == p->sheet;
-}
-
-static void print_text(const simulation_plan *p, const scene *s, const cost *c) {
+static void print_text(const simulation_plan *p, const scene *s, const simulation_cost *c) {
     printf("%s\n\n", s->title[0] ? s->title : s->file);
     printf("  particles  %lld  spacing %.4g  dx %.4g  f%d %s, %d threads\n", (long long)p->particles, p->spacing, p->dx, p->precision,
            p->simd, p->threads);
@@ -61,7 +31,7 @@ static void print_text(const simulation_plan *p, const scene *s, const cost *c) 
     }
     puts("\n  effects");
     for (int e = 0; e < p->effect_count; e++)
-        if (concerns(p, e)) printf("    %-3s %-14s %s\n", p->mask >> e & 1 ? "on" : "off", p->effects[e]->name, p->effects[e]->doc);
+        if (simulation_concerns(p, e)) printf("    %-3s %-14s %s\n", p->mask >> e & 1 ? "on" : "off", p->effects[e]->name, p->effects[e]->doc);
     puts("\n  fields, bytes a particle");
     for (int i = 0; i < p->field_count; i++) printf("    %5.0f  %-22s %s\n", p->fields[i].bytes, p->fields[i].name, p->fields[i].effect);
     printf("    %5.0f  with grid, padding and sort buffers\n", p->bytes_per_particle);
@@ -77,11 +47,11 @@ static void json_names(json_writer *w, const char *key, const simulation_plan *p
     json_key(w, key);
     json_array(w);
     for (int e = 0; e < p->effect_count; e++)
-        if ((mask >> e & 1) && concerns(p, e)) json_string(w, p->effects[e]->name);
+        if ((mask >> e & 1) && simulation_concerns(p, e)) json_string(w, p->effects[e]->name);
     json_array_end(w);
 }
 
-static void print_json(const simulation_plan *p, const scene *s, const cost *c) {
+static void print_json(const simulation_plan *p, const scene *s, const simulation_cost *c) {
     json_writer w;
     report r;
     json_begin(&w, 2);
@@ -129,9 +99,9 @@ static int explain(const char *path, const script_options *options, const simula
     if (script_load(path, options, &s, &reports) != STATUS_OK) return cli_fail_script(&reports);
     report r;
     simulation *simulation_state = NULL;
-    cost c = {0};
+    simulation_cost c = {0};
     status code = simulation_create(script_scene(s), engine, &simulation_state, &r);
-    if (code == STATUS_OK) code = measure_cost(simulation_state, script_scene(s), &c, &r);
+    if (code == STATUS_OK) code = simulation_measure_cost(simulation_state, script_scene(s), 0.5, &c, &r);
     if (code == STATUS_OK) (json ? print_json : print_text)(simulation_get_plan(simulation_state), script_scene(s), &c);
     int exit_code = code == STATUS_OK ? 0 : cli_fail(&r);
     simulation_destroy(simulation_state);

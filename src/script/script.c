@@ -190,6 +190,15 @@ script_source script_source_at(const script *s, int index) {
     return (script_source){.name = file->name, .text = file->text, .size = file->size};
 }
 
+int script_declaration_count(const script *s) {
+    return s->declared_count;
+}
+
+script_declaration script_declaration_at(const script *s, int index) {
+    const declaration *d = &s->declared[index];
+    return (script_declaration){.name = d->name, .choices = d->choices, .choice_count = d->choice_count, .shown = &d->shown};
+}
+
 const char *script_resolved(script *s) {
     return s->resolved;
 }

@@ -53,6 +53,16 @@ typedef struct script_source {
 int script_source_count(const script *s);
 script_source script_source_at(const script *s, int index);
 
+/* What the scene's s.params declared: what --set may be given for it. Strings and choices are the script's. */
+typedef struct script_declaration {
+    const char *name;
+    const char *const *choices; /* [choice_count] of a text that has only those; NULL else */
+    int choice_count;
+    const scene_parameter *shown; /* its value, unit and doc */
+} script_declaration;
+int script_declaration_count(const script *s);
+script_declaration script_declaration_at(const script *s, int index);
+
 /* A Lua text that, given as script_options.resolved, pins every resolved parameter ("return { pull = 0.1, … }"); owned
  * by `s`. */
 const char *script_resolved(script *s);

@@ -26,6 +26,8 @@ typedef struct run_request {
 /* Turns of knobs. `asked` and the lists are under the lock; the simulation's own values are touched by its thread alone. */
 typedef struct session_knobs_state {
     pthread_mutex_t lock;
+    int64_t passed;   /* the last frame whose turns have been taken: what is asked for now acts at the one after */
+    int64_t promised; /* the frame at which the turn asked for last acts */
     scene *asked;     /* values with everything that was asked for */
     knob_turn *turns; /* [count] by frame: the first `acted` have acted, the others were known beforehand */
     int count, acted, capacity;
@@ -82,6 +84,7 @@ status summary_write(session *s, report *r);
 /* turns.c: from a scene, and turns known beforehand, checked one after the other. */
 status turns_begin(session *s, const knob_turn *turns, int count, report *r);
 /* Lets everything act that is due between this frame and the next. */
+void turns_start(session *s); /* before the first frame of this session */
 status turns_act(session *s, report *r);
 void turns_free(session *s);
 

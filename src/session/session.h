@@ -131,6 +131,9 @@ int session_knobs(session *s, knob *out, int limit);
 status session_turn(session *s, const char *path, const double value[3], report *r);
 status session_turn_text(session *s, const char *path, const char *value, report *r);
 
+/* The frame at whose end the turn asked for last acts: what a log of turns notes. */
+int64_t session_turn_frame(session *s);
+
 /* The turns that have acted, and those known beforehand that will, by frame; from any thread. Returns how many there are. */
 int session_turns(session *s, knob_turn *out, int limit);
 

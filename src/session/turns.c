@@ -123,10 +123,17 @@ static void tell_turn(session *s, const knob_turn *turn) {
     (void)ledger_event(s->ledger, s->id, turn->frame, "knob", text, &ignored);
 }
 
+void turns_start(session *s) {
+    pthread_mutex_lock(&s->knobs.lock);
+    s->knobs.passed = simulation_frame(s->simulation) - 1;
+    pthread_mutex_unlock(&s->knobs.lock);
+}
+
 status turns_act(session *s, report *r) {
     session_knobs_state *k = &s->knobs;
     int64_t frame = simulation_frame(s->simulation);
     pthread_mutex_lock(&k->lock);
+    k->passed = frame;
     status code = take_queue(k, frame, r);
     bool due = k->acted < k->count && k->turns[k->acted].frame <= frame;
     pthread_mutex_unlock(&k->lock);
@@ -163,6 +170,7 @@ static status queue_turn(session_knobs_state *k, const char *path, const char *v
     knob_turn *place = insert_turn(&k->queue, &k->queued, &k->queue_capacity, k->queued);
     if (!place) return report_set(r, STATUS_SYSTEM, "out of memory for the turns of knobs");
     *place = turn;
+    k->promised = k->passed + 1;
     k->version++;
     return STATUS_OK;
 }
@@ -190,6 +198,13 @@ status session_turn(session *s, const char *path, const double value[3], report 
     }
     memory_free(list, bytes);
     return code;
+}
+
+int64_t session_turn_frame(session *s) {
+    pthread_mutex_lock(&s->knobs.lock);
+    int64_t frame = s->knobs.promised;
+    pthread_mutex_unlock(&s->knobs.lock);
+    return frame;
 }
 
 int session_turns(session *s, knob_turn *out, int limit) {

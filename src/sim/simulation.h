@@ -74,6 +74,16 @@ void simulation_copy_values(const simulation *s, scene *to);
 /* What runs within a step, in order; returns how many names were written. */
 int simulation_stages(const simulation_plan *plan, char (*text)[48], int limit);
 
+/* Whether an effect could be on in this scene: those of the other engine could not, but for the scene's own. */
+bool simulation_concerns(const simulation_plan *plan, int e);
+
+/* What a run would cost: measured on a few steps of this very plan (at most `limit` seconds of them), then scaled to the scene's frames at its first
+ * step length. The simulation has moved on afterwards. */
+typedef struct simulation_cost {
+    double seconds_per_step, steps, seconds;
+} simulation_cost;
+status simulation_measure_cost(simulation *s, const scene *scene_data, double limit, simulation_cost *c, report *r);
+
 /* Advances by one frame. `abandon` (may be NULL) is looked at between steps: STATUS_INTERRUPTED leaves a state between frames that must
  * not be written. STATUS_DIVERGED says effect, particle and step. */
 status simulation_advance(simulation *s, const atomic_int *abandon, report *r);

@@ -135,3 +135,10 @@ void app_switch_run(tui_app *app, session *run) {
         if (app->opened[i] && screens[i]->follow) screens[i]->follow(app, app->states[i], true);
     app->dirty = true;
 }
+
+status app_turn(tui_app *app, const char *path, const char *value, report *r) {
+    if (!app->run) return report_set(r, STATUS_INPUT, "There is no run whose knobs could be turned.");
+    status s = session_turn_text(app->run, path, value, r);
+    if (s == STATUS_OK) app_log_frame(app, session_turn_frame(app->run));
+    return s;
+}

@@ -90,4 +90,8 @@ void app_end_run(tui_app *app);
 /* Shows another session in place of app->run, which must have ended and is destroyed. NULL: no run. Owned by the app from now on. */
 void app_switch_run(tui_app *app, session *run);
 
+/* Within a handler: turns a knob of app->run as session_turn_text does, and has the log say at which frame it acts, so that
+ * a replay turns it there. */
+status app_turn(tui_app *app, const char *path, const char *value, report *r);
+
 #endif

@@ -379,3 +379,12 @@ status session_start(const session_options *options, session **out, script_repor
     reports->count = 1;
     return report_input(&reports->items[0], options->scene_path, 0, NULL, "a scene file", "a synthetic session only", NULL);
 }
+
+int64_t session_turn_frame(session *s) {
+    return s->state.frame;
+}
+
+void session_request(const session *s, session_options *out) {
+    (void)s;
+    *out = (session_options){.scene_path = "tube_pull.lua", .simd = "auto", .precision = 32, .frames = -1, .checkpoint_every = 1, .keep = 2};
+}

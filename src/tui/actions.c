@@ -1,7 +1,9 @@
 #include "tui/actions.h"
 
 #include "base/names.h"
+#include "script/library.h"
 #include "tui/shell.h"
+#include "tui/start_words.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -168,6 +170,33 @@ static status next_screen(tui_app *app, const char *argument, report *r) {
     return STATUS_OK;
 }
 
+/* ---- runs -------------------------------------------------------------------------------------------------------- */
+
+static status start_run(tui_app *app, const char *argument, report *r) {
+    static start_words words; /* large; used within this call only */
+    char text[START_TEXT];
+    status s = start_parse(argument, &words, r);
+    if (s != STATUS_OK) return s;
+    if (start_print(&words.options, text)) app_log_argument(app, "%s", text);
+    s = app_start_run(app, &words.options, r);
+    if (s == STATUS_OK) app_show(app, &screen_run);
+    return s;
+}
+
+static bool complete_start(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
+    (void)app;
+    enum { MOST = 256 };
+    static library_scene list[MOST];
+    int count = library_scenes(list, MOST);
+    for (int i = 0; i < count; i++) {
+        bool begins = strncmp(list[i].name, text, strlen(text)) == 0 || strncmp(list[i].path, text, strlen(text)) == 0;
+        if (!begins || index-- > 0) continue;
+        snprintf(out, ACTION_ARGUMENT, "%s", list[i].path);
+        return true;
+    }
+    return false;
+}
+
 /* ---- the command log --------------------------------------------------------------------------------------------- */
 
 static status save_commands(tui_app *app, const char *argument, report *r) {
@@ -187,6 +216,8 @@ static const tui_action table[] = {
      .argument = ARGUMENT_TEXT, .asks = "SCREEN", .complete = complete_screen, .unlogged = true},
     {.name = "next-screen", .keys = {'\t', KEY_BTAB}, .keys_shown = "Tab", .help = "the next screen", .handler = next_screen,
      .argument = ARGUMENT_MAY, .asks = "back", .unlogged = true},
+    {.name = "start", .keys_shown = ":", .help = "start a run, in the words of sunder run", .handler = start_run, .argument = ARGUMENT_TEXT,
+     .asks = "SCENE [--set KEY=VALUE] [--recipe NAME]", .complete = complete_start},
     {.name = "quit", .keys = {'q'}, .keys_shown = "q", .hint = "quit", .help = "stop after this frame (asks first), or leave", .handler = quit,
      .argument = ARGUMENT_MAY, .asks = "stop"},
     {.name = "leave", .keys = {'Q'}, .keys_shown = "Q", .help = "leave at once; whole frames are kept", .handler = leave},
@@ -291,7 +322,9 @@ static status do_place(tui_app *app, const action_place *place, const char *argu
     report_clear(r);
     if (!argument[0] && place->action->preset) argument = place->action->preset;
     status s = check_argument(place, argument, r);
-    bool outermost = shell->depth++ == 0;
+    int deeper = !place->action->unlogged; /* what an action that is not logged does itself is logged as its own */
+    bool outermost = shell->depth == 0;
+    shell->depth += deeper;
     if (outermost) shell->log_nothing = shell->log_argument_given = shell->log_frame_given = shell->log_deferred = false;
     if (s == STATUS_OK && place->screen) {
         (void)screen_state(app, place->screen, r);
@@ -299,7 +332,7 @@ static status do_place(tui_app *app, const action_place *place, const char *argu
     }
     if (s == STATUS_OK) s = place->action->handler(app, argument, r);
     if (s == STATUS_OK && outermost) note(app, place, argument);
-    shell->depth--;
+    shell->depth -= deeper;
     if (s != STATUS_OK) app_fail(app, r);
     app->dirty = true;
     return s;

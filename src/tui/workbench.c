@@ -4,11 +4,13 @@
 #include "tui/capture.h"
 #include "tui/shell.h"
 #include "tui/signals.h"
+#include "tui/start_words.h"
 #include "tui/terminal.h"
 #include "tui/widgets.h"
 
 #include <math.h>
 #include <poll.h>
+#include <stdio.h>
 #include <unistd.h>
 
 static const double frame_time = 1.0 / 30; /* s; at most 30 redraws a second, and as many looks at the session */
@@ -137,6 +139,14 @@ static void loop(tui_app *app) {
 
 /* ---- beginning and end ------------------------------------------------------------------------------------------- */
 
+/* A run that the command line has started is noted as if it had been started here. */
+static void log_start(tui_app *app, const session *run) {
+    session_options asked;
+    char words[START_TEXT];
+    session_request(run, &asked);
+    if (start_print(&asked, words)) log_line(app, -1, "start", words);
+}
+
 static status app_open(tui_app *app, session *run, bool unicode, report *r) {
     status s = theme_open(&app->theme, app->options.theme, app->options.colours, app->options.ascii || !unicode, r);
     if (s != STATUS_OK) return s;
@@ -145,9 +155,11 @@ static status app_open(tui_app *app, session *run, bool unicode, report *r) {
     if (!app->shot || !app->shell) return report_set(r, STATUS_SYSTEM, "out of memory for the workbench");
     if (app->options.palette != TUI_AUTO) app->theme.palette = (view_palette)app->options.palette;
     app->leave_at_end = app->options.leave_at_end && run;
+    if (app->options.database) snprintf(app->database, sizeof app->database, "%s", app->options.database);
     log_open(app);
+    if (run) log_start(app, run);
     app_switch_run(app, run);
-    app_show(app, &screen_run);
+    app_show(app, run ? &screen_run : &screen_scenes);
     return STATUS_OK;
 }
 

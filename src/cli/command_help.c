@@ -42,7 +42,7 @@ static void print_parameters(const effect *e) {
         print_default(p);
         printf(" | ");
         print_range(p);
-        printf(" | %s | %s |\n", p->live ? "yes" : "no", p->doc);
+        printf(" | %s%s | %s |\n", p->live ? "yes" : "no: ", p->live ? "" : p->why_not, p->doc);
     }
     putchar('\n');
 }

@@ -59,6 +59,14 @@ static int parse_keep(run_options *o, const char *text) {
         o->session.keep = 0;
         return 0;
     }
+    static const char units[] = "KMGT";
+    size_t digits = strspn(text, "0123456789");
+    const char *unit = digits > 0 && digits < 10 && text[digits] && !text[digits + 1] ? strchr(units, text[digits]) : NULL;
+    if (unit) {
+        o->session.keep_bytes = atoll(text) << 10 * (unit - units + 1);
+        return o->session.keep_bytes > 0 ? 0 : cli_usage("run", "--keep %s: expected more than nothing", text);
+    }
+    if (digits == 0 || text[digits]) return cli_usage("run", "--keep %s: expected a number of checkpoints, all, or a size such as 500M or 2G", text);
     int code = cli_number("run", "--keep", text, 1, 1000000, &value);
     o->session.keep = (int)value;
     return code;
@@ -132,6 +140,16 @@ static int parse_option(run_options *o, int option) {
     return code;
 }
 
+/* A branch is its parent, but for what is turned: it has the parent's scene and all that was said of it. */
+static int check_branch(const run_options *o) {
+    if (!o->session.branch_of) return 0;
+    if (o->session.resume) return cli_usage("run", "--branch or --resume, not both");
+    if (o->scene.scene) return cli_usage("run", "--branch has its scene from the run, found '%s' too", o->scene.scene);
+    if (o->scene.recipe || o->scene.setting_count > 0)
+        return cli_usage("run", "--branch has its parameters from the run: turn live ones (--turn FRAME:PATH=VALUE), or start the scene anew for the others");
+    return 0;
+}
+
 static int parse(run_options *o, int count, char **arguments) {
     size_t used = 0;
     for (int i = 0; i < count && used < sizeof o->command; i++)
@@ -148,6 +166,8 @@ static int parse(run_options *o, int count, char **arguments) {
     o->session.command = o->command;
     o->session.turns = o->turns;
     o->session.turn_count = o->turn_count;
+    int code = check_branch(o);
+    if (code) return code;
     o->session.script.recipe = o->scene.recipe;
     o->session.script.settings = o->scene.settings;
     o->session.script.setting_count = o->scene.setting_count;

@@ -112,7 +112,7 @@ static status find_done(ledger *l, const char *hash, int64_t frames, char id[LED
     snprintf(frames_argument, sizeof frames_argument, "frames=%lld", (long long)frames);
     const char *const arguments[] = {hash_argument, frames_argument};
     return ledger_each_row(l, "SELECT id FROM runs_view WHERE scene_hash = :hash AND status = 'done' AND frames_wanted = CAST(:frames AS INTEGER) "
-                              "AND precision = 'f32' ORDER BY run DESC LIMIT 1", arguments, 2, take_id, id, r);
+                              "AND precision = 'f32' AND run NOT IN (SELECT run FROM knob_turns) ORDER BY run DESC LIMIT 1", arguments, 2, take_id, id, r);
 }
 
 /* Checks every run and marks those that are in the ledger already. STATUS_INPUT when not one can be run: then `reports` says why

@@ -10,7 +10,8 @@
 #include <string.h>
 
 static const command commands[] = {
-    {"run", "run SCENE [options]", "simulate a scene: frames, ledger row, live screen with --tui", command_run},
+    {"run", "run SCENE [options]   run --resume RUN   run --branch RUN@FRAME   (with --turn FRAME:PATH=VALUE as often as wanted)",
+     "simulate a scene: frames, ledger row, live screen with --tui", command_run},
     {"check", "check SCENE [--set KEY=VALUE]… [--recipe NAME] [--json]", "validate a scene without running it", command_check},
     {"explain", "explain SCENE [--set KEY=VALUE]… [--json]", "show the plan: effects, fields, bytes, step limits, cost", command_explain},
     {"sweep", "sweep SCRIPT.lua [-j N] [--set KEY=VALUE]… [--frames N] [--threads N] [--db FILE] [--json] [--quiet]",

@@ -81,6 +81,9 @@ typedef struct effect {
     /* Fills in twins and checks values against each other. `all` has shape [effect count]: the material's other effects
      * may be read (σc depends on E and ν). NULL when there is nothing to do. */
     status (*resolve)(effect_values *own, const effect_values *all, report *r);
+    /* A key was turned while a run goes on: another one that says the same in its own way gives way to it (beyond twins). `all` as the engine's list.
+     * NULL when there is none. */
+    void (*turned)(effect_values *own, const effect_values *all, int key);
     const char *provides; /* what others may need of it where several effects are alternatives ("elasticity"), or NULL; a material
                            * has at most one that provides the same */
     const char *needs;    /* an effect, by name or by what it provides, that must be on beside this one; or NULL */

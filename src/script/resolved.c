@@ -142,6 +142,22 @@ static bool list_material(script *s, int row, bool *derived) {
     return true;
 }
 
+static bool list_sources(script *s) {
+    int number = 0;
+    for (int b = 0; b < s->scene->sheet_count; b++)
+        for (int k = 0; k < s->scene->sheets[b].source_count; k++) {
+            const scene_source *from = &s->scene->sheets[b].sources[k];
+            scene_parameter *strength = add_parameter(s), *on = add_parameter(s);
+            if (!strength || !on) return false;
+            *strength = (scene_parameter){.unit = "1", .doc = "what the source gives, or holds, is multiplied by this", .number = from->strength};
+            *on = (scene_parameter){.unit = "1", .doc = "whether the source does anything", .is_text = true, .number = from->on};
+            snprintf(strength->name, sizeof strength->name, "sources.%d.strength", ++number);
+            snprintf(on->name, sizeof on->name, "sources.%d.on", number);
+            snprintf(on->text, sizeof on->text, "%s", from->on != 0 ? "true" : "false");
+        }
+    return true;
+}
+
 static bool list_all(script *s, bool *derived) {
     int count;
     effect_catalogue(&count);
@@ -159,6 +175,7 @@ static bool list_all(script *s, bool *derived) {
     }
     for (int e = 0; e < count; e++)
         if (!list_effect(s, SCENE_SITE, e, derived)) return false;
+    if (!list_sources(s)) return false;
     for (int row = 0; row < s->scene->material_count; row++)
         if (!list_material(s, row, derived)) return false;
     return true;

@@ -8,24 +8,37 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MATCHES = 64, NAMES = 1024, PATH_SIZE = 192 };
+enum { MATCHES = 64, NAMES = 1024, PATH_SIZE = 192, SOURCE = -2 };
 
 /* A value that --set can reach beside the scene's plain keys. */
 typedef struct knob {
     int row;    /* material, or SCENE_SITE */
-    int effect; /* −1: the density */
-    int key;
+    int effect; /* −1: the density; SOURCE: one of the sheets' sources */
+    int key;    /* of a source 2 × its number among all, and 1 more for `on` */
 } knob;
+
+/* Source number `number` of all sheets, in their order; NULL when there are fewer. */
+static scene_source *source_at(scene *s, int number) {
+    for (int b = 0; b < s->sheet_count; number -= s->sheets[b++].source_count)
+        if (number < s->sheets[b].source_count) return &s->sheets[b].sources[number];
+    return NULL;
+}
+
+static void source_name(int key, char *text) {
+    snprintf(text, PATH_SIZE, "sources.%d.%s", key / 2 + 1, key % 2 ? "on" : "strength");
+}
 
 static const effect *effect_at(int index) {
     int count;
     return effect_catalogue(&count)[index];
 }
 
-/* "tube.damage.eta", "tube.density", "gravity.acceleration" */
+/* "tube.damage.eta", "tube.density", "gravity.acceleration", "sources.1.strength" */
 static void knob_path(const script *s, knob k, char *text) {
     const char *material = k.row == SCENE_SITE ? "" : s->scene->materials[k.row].name;
-    if (k.effect < 0)
+    if (k.effect == SOURCE)
+        source_name(k.key, text);
+    else if (k.effect < 0)
         snprintf(text, PATH_SIZE, "%s.density", material);
     else
         snprintf(text, PATH_SIZE, "%s%s%s.%s", material, *material ? "." : "", effect_at(k.effect)->name,
@@ -37,6 +50,10 @@ static int knob_names(const script *s, knob k, char names[6][PATH_SIZE]) {
     bool of_scene = k.row == SCENE_SITE;
     const char *material = of_scene ? "" : s->scene->materials[k.row].name;
     int count = 0;
+    if (k.effect == SOURCE) {
+        source_name(k.key, names[count++]);
+        return count;
+    }
     if (k.effect < 0) {
         snprintf(names[count++], PATH_SIZE, "density");
         snprintf(names[count++], PATH_SIZE, "%s.density", material);
@@ -71,6 +88,8 @@ static void visit_knobs(const script *s, knob_visitor visit, void *context) {
                 if (!visit(s, (knob){row, e, k}, values[e].on, context)) return;
         }
     }
+    for (int key = 0; source_at(s->scene, key / 2); key++)
+        if (!visit(s, (knob){SCENE_SITE, SOURCE, key}, true, context)) return;
 }
 
 /* ---- finding ----------------------------------------------------------------------------------------------------- */
@@ -178,7 +197,22 @@ static void set_density(script *s, const script_override *o, knob k) {
     s->density_set[k.row] = s->density_set[k.row] || !o->pinned;
 }
 
+static void set_source(script *s, const script_override *o, knob k) {
+    plain_value v = plain_from_text(o->value);
+    plain_rule rule = {.kind = k.key % 2 ? PLAIN_BOOLEAN : PLAIN_NUMBER, .minimum = -1e12, .maximum = 1e12};
+    char expected[256];
+    const char *nearest;
+    scene_source *to = source_at(s->scene, k.key / 2);
+    if (!plain_fit(&v, &rule, expected, sizeof expected, &nearest)) report_setting(s, o, expected, v.found, nearest);
+    else if (k.key % 2) to->on = v.number[0];
+    else to->strength = v.number[0];
+}
+
 static void set_knob(script *s, const script_override *o, knob k) {
+    if (k.effect == SOURCE) {
+        set_source(s, o, k);
+        return;
+    }
     if (k.effect < 0) {
         set_density(s, o, k);
         return;
@@ -198,7 +232,10 @@ static void set_knob(script *s, const script_override *o, knob k) {
     /* Of two keys that say the same thing the one set last holds. */
     const char *twin_name = e->parameters[k.key].twin;
     int twin = twin_name ? effect_parameter(e, twin_name) : -1;
-    if (twin >= 0) values->given[twin] = set[twin] = false;
+    if (twin >= 0) {
+        values->given[twin] = set[twin] = false;
+        memcpy(values->value[twin], e->parameters[twin].fallback, sizeof values->value[twin]);
+    }
     if (k.row < SCENE_SITE) drop_variation(&s->scene->materials[k.row], k.effect, k.key, twin);
 }
 

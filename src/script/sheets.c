@@ -27,15 +27,17 @@ static void read_notch(script *s, int index, const place *p, scene_sheet *b) {
 static void read_source(script *s, int index, const place *p, scene_sheet *b) {
     scene_source *from = &b->sources[b->source_count];
     double spots = 0;
-    *from = (scene_source){.stop = HUGE_VAL};
+    *from = (scene_source){.stop = HUGE_VAL, .strength = 1, .on = 1};
     field fields[] = {{.key = "shape", .kind = FIELD_OTHER},
                       {.key = "rate", .kind = FIELD_OTHER},
                       {.key = "value", .kind = FIELD_OTHER},
                       {.key = "spots", .kind = FIELD_REAL, .number = &spots, .minimum = 0, .maximum = 10000},
                       {.key = "radius", .kind = FIELD_SIZE, .number = &from->radius},
                       {.key = "start", .kind = FIELD_REAL, .number = &from->start},
-                      {.key = "stop", .kind = FIELD_REAL, .number = &from->stop, .infinite = true}};
-    if (!read_fields(s, index, p, fields, 7)) return;
+                      {.key = "stop", .kind = FIELD_REAL, .number = &from->stop, .infinite = true},
+                      {.key = "strength", .kind = FIELD_REAL, .number = &from->strength},
+                      {.key = "on", .kind = FIELD_FLAG, .number = &from->on}};
+    if (!read_fields(s, index, p, fields, 9)) return;
     if (fields[0].given) from->shape = read_shape_field(s, index, p);
     from->spots = (int)spots;
     from->fixed = fields[2].given;

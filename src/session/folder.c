@@ -1,5 +1,7 @@
 /* What a run's folder keeps of how it came about: the text of every script, the resolved parameters, and the request. */
+#include "base/memory.h"
 #include "session/internal.h"
+#include "session/turns_file.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -78,6 +80,28 @@ status request_read(run_request *q, const char *folder, report *r) {
     point_settings(q);
     if (!q->scene[0]) return report_input(r, path, 0, "scene", "the name of the run's scene", "nothing", NULL);
     return STATUS_OK;
+}
+
+static void log_turns(session *s) {
+    const session_knobs_state *k = &s->knobs;
+    report r;
+    ledger_turn *rows = memory_allocate_array((size_t)k->count + 1, sizeof *rows);
+    for (int i = 0; rows && i < k->count; i++) rows[i] = (ledger_turn){k->turns[i].frame, k->turns[i].path, k->turns[i].value};
+    status code = rows ? ledger_turns(s->ledger, s->id, rows, k->count, &r) : report_set(&r, STATUS_SYSTEM, "out of memory for the turns of knobs");
+    session_tolerate(s, code, &r);
+    memory_free(rows, ((size_t)k->count + 1) * sizeof *rows);
+}
+
+status turns_write(session *s, report *r) {
+    char path[SESSION_PATH + 32], *text;
+    size_t size;
+    status code = turns_format(s->knobs.turns, s->knobs.count, &text, &size, r);
+    if (code != STATUS_OK) return code;
+    snprintf(path, sizeof path, "%s/turns.json", s->folder);
+    code = file_write_atomic(path, text, size, r);
+    memory_free(text, size + 1);
+    if (code == STATUS_OK) log_turns(s);
+    return code;
 }
 
 /* Makes the folders of a relative name such as "recipes/tube.lua" under base. */

@@ -13,6 +13,8 @@
 
 enum { SESSION_PATH = 1024, SESSION_SETTINGS = 64 };
 
+#define TURNS_RECORD "session/turns" /* in checkpoints: the turns that have acted, as in turns.json */
+
 /* How a run was asked for, kept in its folder so that it can be resumed and reproduced with the same bits. */
 typedef struct run_request {
     char scene[256], recipe[128], simd[16]; /* scene: path as given, or within the run's folder */
@@ -32,7 +34,8 @@ typedef struct session_knobs_state {
     knob_turn *turns; /* [count] by frame: the first `acted` have acted, the others were known beforehand */
     int count, acted, capacity;
     knob_turn *queue; /* [queued] asked for by hand, for the next boundary */
-    int queued, queue_capacity, version;
+    int queued, queue_capacity;
+    atomic_int version; /* grows when a value of `asked` changes */
 } session_knobs_state;
 
 struct session {
@@ -52,6 +55,12 @@ struct session {
     session_snapshot shown;
     session_knobs_state knobs;
     atomic_llong pause_at; /* −1: none */
+    /* A branch: frames up to past_until are its parent's; from past_from on they are computed again without a word. −1: none. */
+    char parent[LEDGER_ID], parent_folder[SESSION_PATH];
+    int64_t past_from, past_until;
+    bool ring_told;
+    int scalar_count, colour_wanted, colour_shown; /* indices; the wanted one under the lock */
+    simulation_scalar scalars[SESSION_COLOURS];
 
     simulation_measures measures;
     session_sample sample;
@@ -66,23 +75,40 @@ struct session {
 };
 
 double session_clock(void);
+/* Its folder is written no more. */
+void session_release_folder(const session *s);
 
 /* folder.c */
 status request_from_options(run_request *q, const session_options *options, report *r);
 status request_write(const session *s, report *r);
 status request_read(run_request *q, const char *folder, report *r);
 status sources_write(const session *s, report *r);
+/* The whole list into turns.json and the ledger; a ledger that fails is only warned of. */
+status turns_write(session *s, report *r);
 
 /* publish.c */
 void publish_start(session *s);
 void publish_state(session *s, session_state state);
 status publish_frame(session *s, report *r);
 
+/* colours.c: what pictures can be coloured by; the field wanted; its values; and their way into the snapshot, whose lock the caller holds */
+void colour_begin(session *s);
+int colour_wanted(session *s);
+status colour_read(session *s, int which, double *out, report *r);
+void colour_fill(session *s, int which, const double *values);
+/* Gives the snapshot the colours that are wanted, without a new frame. */
+status colour_renew(session *s, report *r);
+
 /* summary.c */
 status summary_write(session *s, report *r);
 
-/* turns.c: from a scene, and turns known beforehand, checked one after the other. */
-status turns_begin(session *s, const knob_turn *turns, int count, report *r);
+/* turns.c: those of the options, checked one after the other on the scene as it is. */
+status turns_begin(session *s, report *r);
+/* Of a run that goes on from a checkpoint: the turns in `folder` up to frame `through`, then those of the options, none before frame `first`. What
+ * acted before the checkpoint's frame acts on the simulation, whose state is still to be restored. */
+status turns_resume(session *s, const char *folder, int64_t through, int64_t first, int64_t checkpoint, const record_list *saved, report *r);
+/* The turns that have acted, as a record of a checkpoint. */
+status turns_save(const session *s, record_list *list, report *r);
 /* Lets everything act that is due between this frame and the next. */
 void turns_start(session *s); /* before the first frame of this session */
 status turns_act(session *s, report *r);
@@ -92,5 +118,9 @@ void turns_free(session *s);
 void *session_loop(void *argument);
 /* Warns on the screen and in the ledger. */
 void session_warn(session *s, const char *text);
+/* An event for the screen and the ledger. */
+void session_tell(session *s, int64_t frame, const char *kind, const char *text);
+/* A ledger that fails must not cost the run its frames: the user is warned and the run goes on. */
+void session_tolerate(session *s, status code, const report *r);
 
 #endif

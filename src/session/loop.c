@@ -12,14 +12,34 @@ double session_clock(void) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-void session_warn(session *s, const char *text) {
-    report ignored;
-    snprintf(s->warning, sizeof s->warning, "%s", text);
-    (void)ledger_event(s->ledger, s->id, simulation_frame(s->simulation), "warning", text, &ignored);
+static void show_event(session *s, int64_t frame, const char *kind, const char *text) {
+    pthread_mutex_lock(&s->lock);
+    session_snapshot *p = &s->shown;
+    if (p->event_count == SESSION_EVENTS) memmove(p->events, p->events + 1, (SESSION_EVENTS - 1) * sizeof p->events[0]);
+    else p->event_count++;
+    session_event *e = &p->events[p->event_count - 1];
+    e->frame = frame;
+    snprintf(e->kind, sizeof e->kind, "%s", kind);
+    snprintf(e->text, sizeof e->text, "%s", text);
+    p->version++;
+    pthread_mutex_unlock(&s->lock);
 }
 
-/* A ledger that fails must not cost the run its frames: the user is warned and the run goes on. */
-static void tolerate(session *s, status code, const report *r) {
+void session_tell(session *s, int64_t frame, const char *kind, const char *text) {
+    report r;
+    show_event(s, frame, kind, text);
+    session_tolerate(s, ledger_event(s->ledger, s->id, frame, kind, text, &r), &r);
+}
+
+void session_warn(session *s, const char *text) {
+    report ignored;
+    int64_t frame = simulation_frame(s->simulation);
+    snprintf(s->warning, sizeof s->warning, "%s", text);
+    show_event(s, frame, "warning", text);
+    (void)ledger_event(s->ledger, s->id, frame, "warning", text, &ignored);
+}
+
+void session_tolerate(session *s, status code, const report *r) {
     if (code == STATUS_OK) return;
     char text[sizeof s->warning];
     report_format(r, text, sizeof text);
@@ -40,13 +60,13 @@ static void log_frame(session *s, double seconds) {
         {"dt_min", s->measures.dt_min},
     };
     report r;
-    tolerate(s, ledger_frame(s->ledger, s->id, s->measures.frame, s->measures.time, s->measures.steps, seconds, values,
-                             sizeof values / sizeof *values, &r), &r);
+    session_tolerate(s, ledger_frame(s->ledger, s->id, s->measures.frame, s->measures.time, s->measures.steps, seconds, values,
+                                     sizeof values / sizeof *values, &r), &r);
     if (m->damage_max > 0.9 && !s->first_crack_told) {
         char text[96];
         s->first_crack_told = true;
         snprintf(text, sizeof text, "first particle over 0.9 at t = %.6g", s->measures.time);
-        tolerate(s, ledger_event(s->ledger, s->id, s->measures.frame, "first_crack", text, &r), &r);
+        session_tell(s, s->measures.frame, "first_crack", text);
     }
 }
 
@@ -76,28 +96,56 @@ static status write_frame(session *s, report *r) {
     return code;
 }
 
+/* Thins older checkpoints when the new one is safe. */
+static status thin_checkpoints(session *s, report *r) {
+    if (s->options.keep_bytes <= 0) return s->options.keep > 0 ? checkpoint_thin(s->folder, s->options.keep, r) : STATUS_OK;
+    int64_t over;
+    char text[160];
+    status code = checkpoint_ring(s->folder, s->options.keep_bytes, &over, r);
+    if (code != STATUS_OK || over == 0 || s->ring_told) return code;
+    s->ring_told = true;
+    snprintf(text, sizeof text, "the first checkpoint and the two newest are kept, %.0f bytes more than --keep allows", (double)over);
+    session_warn(s, text);
+    return STATUS_OK;
+}
+
 static status write_checkpoint(session *s, report *r) {
     record_list records = {0};
     frame_header header = header_of(s);
     status code = simulation_save(s->simulation, &records, r);
+    if (code == STATUS_OK) code = turns_save(s, &records, r);
     if (code == STATUS_OK) code = checkpoint_write(s->folder, &header, &records, r);
     record_clear(&records);
-    if (code == STATUS_OK && s->options.keep > 0) code = checkpoint_thin(s->folder, s->options.keep, r);
-    return code;
+    return code == STATUS_OK ? thin_checkpoints(s, r) : code;
 }
 
-/* Measures the state that has been reached, shows it, files it. */
+/* A branch has its past from its parent: its frames are there, and its rows. What it needs of its own is a checkpoint where it begins. */
+static status file_past(session *s, report *r) {
+    int64_t frame = s->measures.frame;
+    status code = frame_exists(s->folder, frame) ? STATUS_OK : write_frame(s, r);
+    bool due = s->options.checkpoint_every > 0 && (frame == s->past_from || frame == s->past_until) && !checkpoint_exists(s->folder, frame);
+    return code == STATUS_OK && due ? write_checkpoint(s, r) : code;
+}
+
+static status file_frame(session *s, double seconds, report *r) {
+    if (s->measures.frame <= s->past_until) return file_past(s, r);
+    status code = write_frame(s, r);
+    if (code != STATUS_OK) return code;
+    log_frame(s, seconds);
+    int every = s->options.checkpoint_every;
+    bool due = every > 0 && (s->measures.frame % every == 0 || s->measures.frame == s->target || atomic_load(&s->stop));
+    return due ? write_checkpoint(s, r) : STATUS_OK;
+}
+
+/* Measures the state that has been reached, files it (unless a resumed run's folder has it), shows it. */
 static status settle_frame(session *s, double seconds, bool file, report *r) {
     status code = simulation_measure(s->simulation, &s->measures, r);
     if (code != STATUS_OK) return code;
     const char *warning = simulation_take_warning(s->simulation);
     if (warning[0]) session_warn(s, warning);
     take_sample(s, seconds);
-    if (file && (code = write_frame(s, r)) != STATUS_OK) return code;
-    if (file) log_frame(s, seconds);
-    int every = s->options.checkpoint_every;
-    bool due = every > 0 && (s->measures.frame % every == 0 || s->measures.frame == s->target || atomic_load(&s->stop));
-    if (file && due && (code = write_checkpoint(s, r)) != STATUS_OK) return code;
+    if (!file || s->measures.frame <= s->past_until) s->first_crack_told = s->measures.solid.damage_max > 0.9;
+    if (file && (code = file_frame(s, seconds, r)) != STATUS_OK) return code;
     return publish_frame(s, r);
 }
 
@@ -116,6 +164,8 @@ static bool may_go_on(session *s) {
         }
         if (!told) publish_state(s, SESSION_PAUSED);
         told = true;
+        report ignored;
+        if (colour_wanted(s) != s->colour_shown) (void)colour_renew(s, &ignored);
         nanosleep(&(struct timespec){.tv_nsec = 5000000}, NULL);
     }
     if (told) publish_state(s, SESSION_RUNNING);
@@ -163,6 +213,7 @@ void *session_loop(void *argument) {
     report_clear(&s->report);
     s->outcome = run_frames(s, &s->report);
     finish(s);
+    session_release_folder(s);
     publish_state(s, SESSION_ENDED);
     atomic_store(&s->ended, 1);
     return NULL;

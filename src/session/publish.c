@@ -18,9 +18,10 @@ void publish_start(session *s) {
             snprintf(p->variant, sizeof p->variant, "%.63s", s->scene->parameters[i].text);
     for (int e = 0; e < plan->effect_count && p->effect_count < SESSION_EFFECTS; e++)
         if (plan->mask >> e & 1) snprintf(p->effects[p->effect_count++], sizeof p->effects[0], "%s", plan->effects[e]->name);
-    snprintf(p->colour, sizeof p->colour, "%s", simulation_picture_field(s->simulation));
-    p->colour_maximum = p->scalar_maximum = 1;
+    colour_begin(s);
     p->pause_at = -1;
+    snprintf(p->parent, sizeof p->parent, "%.39s", s->parent);
+    p->parent_frame = s->past_until;
     p->threads = plan->threads;
     p->particles = plan->particles;
     p->frames = s->target;
@@ -90,54 +91,66 @@ static void fill_bounds(session_snapshot *p) {
         }
 }
 
-/* Positions and damage, read outside the lock into `wide`, then copied. */
-static void fill_points(session *s, const double *position, const double *damage) {
+static void fill_points(session *s, const double *position) {
     session_snapshot *p = &s->shown;
     bool first = p->point_count == 0;
     p->point_count = p->particles;
     const uint8_t *body = simulation_bodies(s->simulation);
     for (int64_t i = 0; i < p->point_count; i++) {
         for (int c = 0; c < 3; c++) p->position[3 * i + c] = (float)position[3 * i + c];
-        p->scalar[i] = damage ? (float)damage[i] : 0;
         p->body[i] = body[i];
     }
     if (first) fill_bounds(p);
 }
 
-/* Colours run from 0 to 1: a quantity without a natural range is shown over its largest value. */
-static void scale_colour(double *value, int64_t count) {
-    double most = 0;
-    for (int64_t i = 0; i < count; i++) most = value[i] > most ? value[i] : most;
-    for (int64_t i = 0; i < count && most > 0; i++) value[i] /= most;
+static void fill_stages(session *s) {
+    simulation_effort all[SESSION_STAGES];
+    session_snapshot *p = &s->shown;
+    int count = simulation_efforts(s->simulation, all, SESSION_STAGES);
+    double sum = 0;
+    p->stage_count = count < SESSION_STAGES ? count : SESSION_STAGES;
+    for (int i = 0; i < p->stage_count; i++) sum += all[i].part ? 0 : all[i].seconds;
+    for (int i = 0; i < p->stage_count; i++) {
+        p->stages[i] = (session_stage){.seconds = all[i].seconds, .share = sum > 0 ? all[i].seconds / sum : 0, .part = all[i].part};
+        memcpy(p->stages[i].name, all[i].name, sizeof all[i].name);
+    }
 }
 
+static void fill_numbers(session *s) {
+    session_snapshot *p = &s->shown;
+    p->frame = simulation_frame(s->simulation);
+    p->step = simulation_steps(s->simulation);
+    p->time = simulation_time(s->simulation);
+    p->dt = s->sample.dt;
+    p->dt_min = s->measures.dt_min;
+    p->dt_max = s->measures.dt_max;
+    p->now = s->sample;
+    p->seconds_per_frame = s->last_frame_wall;
+    p->seconds_left = s->last_frame_wall * (double)(s->target - p->frame);
+}
+
+/* What the picture needs is read outside the lock, then copied. */
 status publish_frame(session *s, report *r) {
     size_t n = (size_t)s->shown.particles;
-    double *position = memory_allocate_array(n, 3 * sizeof *position), *damage = memory_allocate_array(n, sizeof *damage);
-    status code = position && damage ? STATUS_OK : report_set(r, STATUS_SYSTEM, "out of memory for the picture");
+    int colour = colour_wanted(s);
+    double *position = memory_allocate_array(n, 3 * sizeof *position), *scalar = memory_allocate_array(n, sizeof *scalar);
+    status code = position && scalar ? colour_read(s, colour, scalar, r) : report_set(r, STATUS_SYSTEM, "out of memory for the picture");
     if (code == STATUS_OK) {
         simulation_read(s->simulation, "position", position);
-        bool damaged = simulation_read(s->simulation, simulation_picture_field(s->simulation), damage) > 0;
-        if (damaged && strcmp(simulation_picture_field(s->simulation), "diffused") == 0) scale_colour(damage, s->shown.particles);
         pthread_mutex_lock(&s->lock);
-        session_snapshot *p = &s->shown;
-        code = reserve_points(p, p->particles, r);
-        if (code == STATUS_OK) fill_points(s, position, damaged ? damage : NULL);
-        p->frame = simulation_frame(s->simulation);
-        p->step = simulation_steps(s->simulation);
-        p->time = simulation_time(s->simulation);
-        p->dt = s->sample.dt;
-        p->dt_min = s->measures.dt_min;
-        p->dt_max = s->measures.dt_max;
-        p->now = s->sample;
-        p->seconds_per_frame = s->last_frame_wall;
-        p->seconds_left = s->last_frame_wall * (double)(s->target - p->frame);
-        push_history(p, &s->sample);
+        code = reserve_points(&s->shown, s->shown.particles, r);
+        if (code == STATUS_OK) {
+            fill_points(s, position);
+            colour_fill(s, colour, scalar);
+        }
+        fill_numbers(s);
+        fill_stages(s);
+        push_history(&s->shown, &s->sample);
         refresh(s, atomic_load(&s->paused) ? SESSION_PAUSED : SESSION_RUNNING);
         pthread_mutex_unlock(&s->lock);
     }
     memory_free(position, position ? n * 3 * sizeof *position : 0);
-    memory_free(damage, damage ? n * sizeof *damage : 0);
+    memory_free(scalar, scalar ? n * sizeof *scalar : 0);
     return code;
 }
 

@@ -17,6 +17,37 @@ session_options session_options_default(void) {
                              .checkpoint_every = 1, .keep = 2, .deflate = 1};
 }
 
+/* ---- folders that this process writes ---------------------------------------------------------------------------- */
+
+enum { CLAIMS = 64 };
+static pthread_mutex_t claims_lock = PTHREAD_MUTEX_INITIALIZER;
+static session *claims[CLAIMS];
+
+/* A run that another session of this process is still writing must not be resumed: its frames would be cut under its feet. (The ledger knows of
+ * other processes.) */
+static status claim_folder(session *s, report *r) {
+    session **place = NULL;
+    bool taken = false;
+    pthread_mutex_lock(&claims_lock);
+    for (int i = 0; i < CLAIMS; i++) {
+        taken |= claims[i] && strcmp(claims[i]->folder, s->folder) == 0;
+        if (!claims[i] && !place) place = &claims[i];
+    }
+    if (!taken && place) *place = s;
+    pthread_mutex_unlock(&claims_lock);
+    if (taken) return report_input(r, s->folder, 0, "resume", "a run that has ended", "one that this process is still writing", NULL);
+    return place ? STATUS_OK : report_set(r, STATUS_SYSTEM, "more than %d sessions at a time", (int)CLAIMS);
+}
+
+void session_release_folder(const session *s) {
+    pthread_mutex_lock(&claims_lock);
+    for (int i = 0; i < CLAIMS; i++)
+        if (claims[i] == s) claims[i] = NULL;
+    pthread_mutex_unlock(&claims_lock);
+}
+
+/* ---- starting ---------------------------------------------------------------------------------------------------- */
+
 static status open_ledger(session *s, report *r) {
     status code = STATUS_OK;
     if (s->options.database) snprintf(s->database, sizeof s->database, "%s", s->options.database);
@@ -28,6 +59,21 @@ static status find_resumed(session *s, report *r) {
     status code = ledger_resolve(s->ledger, s->options.resume, s->id, s->folder, sizeof s->folder, r);
     if (code == STATUS_OK) code = request_read(&s->request, s->folder, r);
     return code;
+}
+
+/* The run that a branch leaves; its folder says how it was asked for. */
+static status find_parent(session *s, report *r) {
+    status code = ledger_resolve(s->ledger, s->options.branch_of, s->parent, s->parent_folder, sizeof s->parent_folder, r);
+    if (code == STATUS_OK) code = request_read(&s->request, s->parent_folder, r);
+    if (code != STATUS_OK) return code;
+    int64_t last = frame_last(s->parent_folder);
+    s->past_until = s->options.branch_frame;
+    if (s->past_until >= 0 && s->past_until <= last) return STATUS_OK;
+    char expected[96], found[32], nearest[32];
+    snprintf(expected, sizeof expected, "a frame that %.40s has, from 0 to %lld", s->parent, (long long)last);
+    snprintf(found, sizeof found, "%lld", (long long)s->past_until);
+    snprintf(nearest, sizeof nearest, "%lld", (long long)last);
+    return report_input(r, NULL, 0, "branch", expected, found, last >= 0 ? nearest : NULL);
 }
 
 static status load_scene(session *s, script_reports *reports) {
@@ -50,26 +96,48 @@ static status make_simulation(session *s, report *r) {
     return STATUS_OK;
 }
 
-/* Back to the last checkpoint; frames after it are written again. */
+static void tell_of_damaged(session *s, const report *warning) {
+    char text[512];
+    if (warning->code == STATUS_OK) return;
+    report_format(warning, text, sizeof text);
+    session_warn(s, text);
+}
+
+/* Back to the last checkpoint; frames after it are written again. Nothing in the folder is touched before all that could be refused has been. */
 static status restore(session *s, report *r) {
     record_list records = {0};
     int64_t frame = 0;
-    report warning;
+    report warning, ignored;
     report_clear(&warning);
     status code = checkpoint_read_last(s->folder, &records, &frame, &warning, r);
+    if (code == STATUS_OK && s->options.frames >= 0) s->target = frame + s->options.frames;
+    if (code == STATUS_OK) code = turns_resume(s, s->folder, INT64_MAX, frame, frame, &records, r);
     if (code == STATUS_OK) code = simulation_restore(s->simulation, &records, r);
     record_clear(&records);
     if (code == STATUS_OK) code = ledger_reopen(s->ledger, s->id, r); /* refuses a run that still lives: its frames stay */
     if (code == STATUS_OK) code = frame_truncate(s->folder, frame, r);
+    if (code == STATUS_OK && s->knobs.count > 0) code = turns_write(s, r);
     if (code != STATUS_OK) return code;
-    if (warning.code != STATUS_OK) {
-        char text[512];
-        report_format(&warning, text, sizeof text);
-        session_warn(s, text);
-    }
+    session_tolerate(s, ledger_cut_events(s->ledger, s->id, frame, &ignored), &ignored);
+    tell_of_damaged(s, &warning);
     s->steps_before = simulation_steps(s->simulation);
-    if (s->options.frames >= 0) s->target = frame + s->options.frames;
     return STATUS_OK;
+}
+
+/* To the parent's newest checkpoint up to the branch's frame, or to the scene's own start where there is none; the rest of the way is computed again. */
+static status restore_parent(session *s, report *r) {
+    record_list records = {0};
+    int64_t frame = -1, start;
+    report warning;
+    status code = checkpoint_read_before(s->parent_folder, s->past_until, &records, &frame, &warning, r);
+    start = s->past_from = frame < 0 ? 0 : frame;
+    if (s->options.frames >= 0) s->target = s->past_until + s->options.frames;
+    if (code == STATUS_OK) code = turns_resume(s, s->parent_folder, s->past_until, s->past_until, start, &records, r);
+    if (code == STATUS_OK && frame >= 0) code = simulation_restore(s->simulation, &records, r);
+    record_clear(&records);
+    s->steps_before = simulation_steps(s->simulation);
+    if (code == STATUS_OK) tell_of_damaged(s, &warning);
+    return code;
 }
 
 static void effect_names(const simulation_plan *plan, char *text, size_t size) {
@@ -119,7 +187,7 @@ static status begin_row(session *s, report *r) {
                       .variant = variant_of(s->scene), .command = s->options.command, .output = s->folder,
                       .precision = plan->precision == 32 ? "f32" : "f64", .simd = plan->simd, .version = SUNDER_VERSION,
                       .effects = effects, .threads = plan->threads, .particles = plan->particles, .frames_wanted = s->target,
-                      .seed = (int64_t)s->scene->seed};
+                      .seed = (int64_t)s->scene->seed, .parent = s->parent[0] ? s->parent : NULL, .parent_frame = s->past_until};
     return ledger_begin(s->ledger, &run, s->id, r);
 }
 
@@ -133,6 +201,7 @@ static status begin_rows(session *s, report *r) {
         if (code == STATUS_OK) code = ledger_set_output(s->ledger, s->id, s->folder, r);
     }
     if (code == STATUS_OK) code = log_parameters(s, r);
+    if (code == STATUS_OK && s->parent[0]) code = ledger_copy_past(s->ledger, s->parent, s->id, s->past_until, r);
     return ledger_batch_end(s->ledger, code, r);
 }
 
@@ -149,6 +218,8 @@ static status begin(session *s, report *r) {
     if (!s->options.output) code = run_folder_create(s->folder, false, r);
     if (code == STATUS_OK) code = sources_write(s, r);
     if (code == STATUS_OK) code = request_write(s, r);
+    if (code == STATUS_OK && s->knobs.count > 0) code = turns_write(s, r);
+    if (code == STATUS_OK && s->parent[0]) code = frame_adopt(s->parent_folder, s->folder, s->past_until, r);
     if (code == STATUS_OK) return code;
     char text[768];
     report ignored;
@@ -161,20 +232,22 @@ static status prepare(session *s, script_reports *reports) {
     report *r = &reports->items[0];
     reports->count = 0;
     status code = STATUS_OK;
-    if (s->options.resume) {
-        code = open_ledger(s, r);
-        if (code == STATUS_OK) code = find_resumed(s, r);
-    } else {
-        code = request_from_options(&s->request, &s->options, r);
-    }
+    bool goes_on = s->options.resume || s->options.branch_of;
+    if (goes_on) code = open_ledger(s, r);
+    else code = request_from_options(&s->request, &s->options, r);
+    if (code == STATUS_OK && s->options.resume) code = find_resumed(s, r);
+    if (code == STATUS_OK && s->options.branch_of) code = find_parent(s, r);
+    if (code == STATUS_OK && s->options.resume) code = claim_folder(s, r);
     if (code == STATUS_OK) {
         code = load_scene(s, reports);
         if (code != STATUS_OK) return code; /* the script has filled in its reports */
         code = make_simulation(s, r);
     }
-    if (code == STATUS_OK) code = turns_begin(s, s->options.turns, s->options.turn_count, r);
+    if (code == STATUS_OK && !goes_on) code = turns_begin(s, r);
+    if (code == STATUS_OK && s->options.branch_of) code = restore_parent(s, r);
     if (code == STATUS_OK && !s->ledger) code = open_ledger(s, r);
     if (code == STATUS_OK) code = s->options.resume ? restore(s, r) : begin(s, r);
+    if (code == STATUS_OK && !s->options.resume) code = claim_folder(s, r);
     reports->count = code != STATUS_OK;
     return code;
 }
@@ -191,6 +264,7 @@ status session_start(const session_options *options, session **out, script_repor
     pthread_mutex_init(&s->lock, NULL);
     pthread_mutex_init(&s->knobs.lock, NULL);
     atomic_store(&s->pause_at, -1);
+    s->past_until = -1;
     atomic_store(&s->paused, options->start_paused);
     status code = prepare(s, reports);
     if (code == STATUS_OK) {
@@ -275,6 +349,7 @@ void session_destroy(session *s) {
         if (!atomic_load(&s->ended)) session_stop(s);
         pthread_join(s->thread, NULL);
     }
+    session_release_folder(s);
     simulation_destroy(s->simulation);
     if (s->script) script_close(s->script);
     if (s->ledger) ledger_close(s->ledger);

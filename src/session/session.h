@@ -64,12 +64,12 @@ typedef struct session_event {
     char kind[16], text[176];
 } session_event;
 
-/* Where the time of steps goes: a stage of a step, or an effect's part in it. */
+/* Where the time of steps goes: a phase of a step, or an effect's part in it. */
 typedef struct session_stage {
-    char name[48];   /* "sort", "p2g", "p2g fibres.stress" … */
-    double seconds;  /* since the session's start */
-    double share;    /* of the time of all steps */
-    bool part;       /* an effect's part of the stage above it */
+    char name[48];  /* "sort", "p2g" …, then the names of effects */
+    double seconds; /* since the session's start */
+    double share;   /* of all phases */
+    bool part;      /* an effect's part of the phase above it */
 } session_stage;
 
 /* What a screen shows. Arrays have shape [particles][…], rows by id, and belong to the snapshot. */
@@ -119,7 +119,7 @@ void session_snapshot_free(session_snapshot *snapshot);
 /* Requests, from any thread (session_stop also from a signal handler). */
 void session_pause(session *s, bool paused);
 void session_step_once(session *s); /* while paused: one frame */
-void session_run_to(session *s, int64_t frame); /* go on, and pause when that frame is reached; one that is past pauses at the next */
+void session_run_to(session *s, int64_t frame); /* go on, and pause when that frame is reached; one that is past pauses at once */
 void session_stop(session *s);      /* finish the frame, write a checkpoint, end as interrupted */
 void session_abandon(session *s);   /* leave at the next step: up to the last whole frame is kept */
 

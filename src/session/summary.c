@@ -27,7 +27,10 @@ static void write_run(session *s, json_writer *w) {
     const simulation_plan *plan = simulation_get_plan(s->simulation);
     double steps = (double)(simulation_steps(s->simulation) - s->steps_before);
     json_member_string(w, "run_id", s->id);
-    json_member_string(w, "scene", s->options.resume ? s->request.scene : s->options.scene_path);
+    json_member_string(w, "scene", s->options.resume || s->parent[0] ? s->request.scene : s->options.scene_path);
+    if (s->parent[0]) json_member_string(w, "parent", s->parent);
+    if (s->parent[0]) json_member_integer(w, "parent_frame", s->past_until);
+    json_member_integer(w, "turns", s->knobs.acted);
     json_member_string(w, "title", s->scene->title);
     json_member_string(w, "status", outcome_word(s->outcome));
     char message[1024] = "";

@@ -122,6 +122,10 @@ static void destroy(sheet *s) {
     memory_free(s, sizeof *s);
 }
 
+static void feed(sheet *s, const sheet_feed *feeds) {
+    for (int k = 0; k < s->definition.source_count; k++) s->feeds[k] = feeds ? feeds[k] : (sheet_feed){.strength = 1};
+}
+
 static sheet *create(const sheet_definition *definition, report *r) {
     sheet *s = memory_allocate(sizeof *s);
     if (!s) {
@@ -133,6 +137,8 @@ static sheet *create(const sheet_definition *definition, report *r) {
     s->threads = definition->threads > 0 ? definition->threads : 1;
     s->count = definition->count;
     s->stiffening = 1;
+    feed(s, definition->feeds);
+    s->definition.feeds = NULL;
     if (build(s, true, r) != STATUS_OK) {
         destroy(s);
         return NULL;
@@ -271,6 +277,6 @@ const sheet_engine sheet_engine_table = {
     .simd = TEXT(SHEET_SIMD_NAME), .precision = SUNDER_PRECISION, .effects = sheet_effect_table, .effect_count = SHEET_EFFECTS,
     .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .step = step, .settle = sheet_diffuse,
     .measure = sheet_measure, .read = sheet_read, .components = components, .bonds = sheet_bonds, .calibration = calibration,
-    .save = sheet_save, .restore = sheet_restore, .stages = stage_names, .surround = surround, .refresh = refresh,
+    .save = sheet_save, .restore = sheet_restore, .stages = stage_names, .feed = feed, .surround = surround, .refresh = refresh,
     .bytes_per_particle = bytes_per_particle, .phases = phases,
 };

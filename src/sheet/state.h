@@ -98,6 +98,7 @@ struct sheet {
     real *whole;          // [pack_count][PACK], Σ laplace where curvature is known, −1 elsewhere
     double *weight_sum;   // [pack_count][PACK], w; NULL unless state-based
 
+    sheet_feed feeds[SHEET_SOURCES];
     double diffused_until; /* the time that θ has been brought to */
     group_result *results; // [group_count]
     double grip_work, grip_impulse[3];

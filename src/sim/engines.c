@@ -52,19 +52,6 @@ int simulation_read(const simulation *s, const char *field, double *out) {
     return out ? s->engine->read(s->solid, field, out) : s->engine->components(s->solid, field);
 }
 
-status engine_refresh(simulation *s, report *r) {
-    static const double still[3] = {0};
-    const effect_values *gravity = &s->scene->effects[effect_index("gravity")], *damping = &s->scene->effects[effect_index("mass_damping")];
-    const double *g = gravity->on ? gravity->value[0] : still;
-    if (s->sheet) {
-        s->sheets->surround(s->sheet, g);
-        return s->sheets->refresh(s->sheet, r);
-    }
-    s->engine->surround(s->solid, g, damping->on ? damping->value[0][0] : 0);
-    s->engine->refresh(s->solid);
-    return STATUS_OK;
-}
-
 const char *simulation_picture_field(const simulation *s) {
     if (!s->sheet) return "damage";
     return simulation_read(s, "diffused", NULL) ? "diffused" : "broken";
@@ -121,14 +108,40 @@ static uint32_t sheet_mask(const scene *s) {
     return mask;
 }
 
+/* By the index of the engine's sources. */
+static void list_feeds(const scene *s, sheet_feed out[SHEET_SOURCES]) {
+    int count = 0;
+    for (int b = 0; b < s->sheet_count; b++)
+        for (int k = 0; k < s->sheets[b].source_count && count < SHEET_SOURCES; k++)
+            out[count++] = (sheet_feed){s->sheets[b].sources[k].strength, s->sheets[b].sources[k].on == 0};
+}
+
+status engine_refresh(simulation *s, report *r) {
+    static const double still[3] = {0};
+    const effect_values *gravity = &s->scene->effects[effect_index("gravity")], *damping = &s->scene->effects[effect_index("mass_damping")];
+    const double *g = gravity->on ? gravity->value[0] : still;
+    if (s->sheet) {
+        sheet_feed feeds[SHEET_SOURCES];
+        list_feeds(s->scene, feeds);
+        s->sheets->feed(s->sheet, feeds);
+        s->sheets->surround(s->sheet, g);
+        return s->sheets->refresh(s->sheet, r);
+    }
+    s->engine->surround(s->solid, g, damping->on ? damping->value[0][0] : 0);
+    s->engine->refresh(s->solid);
+    return STATUS_OK;
+}
+
 status engine_create_sheet(simulation *s, int threads, report *r) {
     const scene *from = s->scene;
     const sheet_particles *p = &s->sheet_points;
     sheet_definition *d = memory_allocate(sizeof *d);
+    sheet_feed feeds[SHEET_SOURCES];
     if (!d) return report_set(r, STATUS_SYSTEM, "out of memory for the plan");
+    list_feeds(from, feeds);
     *d = (sheet_definition){.threads = threads, .effect_mask = sheet_mask(from), .material_count = from->material_count, .body_count = p->body_count,
                             .notch_count = p->notch_count, .source_count = p->source_count, .count = p->count, .rest = p->rest,
-                            .position = p->position, .velocity = p->velocity, .area = p->area, .grain = p->grain, .protected = p->protected};
+                            .position = p->position, .velocity = p->velocity, .area = p->area, .grain = p->grain, .protected = p->protected, .feeds = feeds};
     for (int m = 0; m < from->material_count; m++)
         d->materials[m] = (sheet_material){.density = from->materials[m].density, .effects = from->materials[m].effects + sheet_effects_first()};
     memcpy(d->bodies, p->bodies, sizeof p->bodies);

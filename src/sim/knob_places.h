@@ -4,13 +4,13 @@
 
 #include "sim/knobs.h"
 
-typedef enum place_kind { PLACE_EFFECT, PLACE_DENSITY, PLACE_SCENE_KEY, PLACE_DECLARED } place_kind;
+typedef enum place_kind { PLACE_EFFECT, PLACE_DENSITY, PLACE_SCENE_KEY, PLACE_SOURCE, PLACE_DECLARED } place_kind;
 
 typedef struct knob_place {
     place_kind kind;
     int material; /* −1: the scene's */
     int effect;   /* index in the catalogue; −1: none */
-    int key;      /* index in the effect's parameters, in the keys of the scene, or in scene.parameters */
+    int key;      /* index in the effect's parameters, in the keys of the scene, or in scene.parameters; of sources 2 × number, and 1 more for `on` */
 } knob_place;
 
 typedef struct knob_places {

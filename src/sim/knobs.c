@@ -19,6 +19,11 @@ static const parameter scene_keys[] = {
 };
 enum { SCENE_KEYS = sizeof scene_keys / sizeof *scene_keys };
 
+static const parameter source_keys[] = {
+    {.key = "strength", .unit = "1", .doc = "what the source gives, or holds, is multiplied by this", .minimum = -1e12, .maximum = 1e12, .fallback = {1}, .live = true},
+    {.key = "on", .unit = "1", .doc = "whether the source does anything", .kind = PARAMETER_BOOLEAN, .maximum = 1, .fallback = {1}, .live = true},
+};
+
 static const parameter density_key = {.key = "density", .unit = "mass/length^3", .doc = "at rest", .maximum = HUGE_VAL, .logarithmic = true,
                                       .why_not = "particles got their masses from it"};
 
@@ -36,6 +41,21 @@ static void add_effects(const scene *s, int material, knob_places *all) {
     }
 }
 
+/* Source number `number` of all sheets, in their order; NULL when there are fewer. */
+static scene_source *source_at(scene *s, int number) {
+    for (int b = 0; b < s->sheet_count; number -= s->sheets[b++].source_count)
+        if (number < s->sheets[b].source_count) return &s->sheets[b].sources[number];
+    return NULL;
+}
+
+static void add_sources(const scene *s, knob_places *all) {
+    for (int b = 0, number = 0; b < s->sheet_count; b++)
+        for (int k = 0; k < s->sheets[b].source_count; k++, number++) {
+            add_place(all, (knob_place){PLACE_SOURCE, -1, -1, 2 * number});
+            add_place(all, (knob_place){PLACE_SOURCE, -1, -1, 2 * number + 1});
+        }
+}
+
 static bool is_declared(const scene_parameter *p) {
     if (p->is_text || strchr(p->name, '.')) return false;
     for (int k = 0; k < SCENE_KEYS; k++)
@@ -51,6 +71,7 @@ void knob_places_list(const scene *s, knob_places *all) {
     }
     add_effects(s, -1, all);
     for (int k = 0; k < SCENE_KEYS; k++) add_place(all, (knob_place){PLACE_SCENE_KEY, -1, -1, k});
+    add_sources(s, all);
     for (int i = 0; i < s->parameter_count; i++)
         if (is_declared(&s->parameters[i])) add_place(all, (knob_place){PLACE_DECLARED, -1, -1, i});
 }
@@ -62,6 +83,7 @@ static const parameter *table_of(knob_place p) {
     case PLACE_EFFECT: return &effect_catalogue(&count)[p.effect]->parameters[p.key];
     case PLACE_DENSITY: return &density_key;
     case PLACE_SCENE_KEY: return &scene_keys[p.key];
+    case PLACE_SOURCE: return &source_keys[p.key % 2];
     case PLACE_DECLARED: break;
     }
     return NULL;
@@ -76,6 +98,7 @@ double *knob_place_value(scene *s, knob_place p) {
     case PLACE_EFFECT: return knob_place_values(s, p)->value[p.key];
     case PLACE_DENSITY: return &s->materials[p.material].density;
     case PLACE_SCENE_KEY: return p.key == 0 ? &s->cfl : &s->dt;
+    case PLACE_SOURCE: return p.key % 2 ? &source_at(s, p.key / 2)->on : &source_at(s, p.key / 2)->strength;
     case PLACE_DECLARED: break;
     }
     return &s->parameters[p.key].number;
@@ -113,7 +136,8 @@ static void describe_path(const scene *s, knob_place p, knob *k) {
     const effect *e = p.effect >= 0 ? effect_catalogue(&count)[p.effect] : NULL;
     if (p.material >= 0) memcpy(k->owner, s->materials[p.material].name, sizeof k->owner);
     if (e) snprintf(k->effect, sizeof k->effect, "%s", e->name);
-    if (*k->owner && e) snprintf(k->path, sizeof k->path, "%.63s.%.30s.%.31s", k->owner, e->name, k->key);
+    if (p.kind == PLACE_SOURCE) snprintf(k->path, sizeof k->path, "sources.%d.%.31s", p.key / 2 + 1, k->key);
+    else if (*k->owner && e) snprintf(k->path, sizeof k->path, "%.63s.%.30s.%.31s", k->owner, e->name, k->key);
     else if (*k->owner || e) snprintf(k->path, sizeof k->path, "%.63s.%.31s", e ? e->name : k->owner, k->key);
     else snprintf(k->path, sizeof k->path, "%.63s", k->key);
 }

@@ -79,6 +79,8 @@ typedef struct scene_source {
     scene_function value; /* of place, 1 output: a rate, or the value that is held */
     bool fixed;           /* hold the value instead of adding it */
     double start, stop;   /* on while start ≤ t < stop; stop may be HUGE_VAL */
+    double strength;      /* what it gives, or holds, is multiplied by this; 1 */
+    double on;            /* 1, or 0: it does nothing at all */
 } scene_source;
 
 typedef struct scene_sheet {

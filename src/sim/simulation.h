@@ -118,6 +118,26 @@ const uint8_t *simulation_bodies(const simulation *s);
 /* Copies a field in order of id, as the engines' `read`; out NULL: components alone. 0 when there is no such field. */
 int simulation_read(const simulation *s, const char *field, double *out);
 
+/* One number a particle, for pictures: fields with one component, and what is derived from others (speed, displacement, body; of solids
+ * stretch, determinant, stress, fibre_stretch). Lists those that this simulation has, the one that pictures show unasked first; returns how
+ * many. */
+typedef struct simulation_scalar {
+    char name[32], unit[48], doc[96];
+    bool share; /* from 0 to 1 by its nature */
+} simulation_scalar;
+int simulation_scalars(const simulation *s, simulation_scalar *out, int limit);
+
+/* Fills out[particles] by id. Errors: no such scalar (with the nearest), memory. */
+status simulation_read_scalar(const simulation *s, const char *name, double *out, report *r);
+
+/* Seconds of steps since the start: the engine's phases in order, each followed by what effects have in it where that is known. Returns how many. */
+typedef struct simulation_effort {
+    char name[48];
+    double seconds;
+    bool part; /* an effect's part of the phase before it */
+} simulation_effort;
+int simulation_efforts(const simulation *s, simulation_effort *out, int limit);
+
 /* The field that pictures colour by: damage, the diffused quantity, or broken bonds. */
 const char *simulation_picture_field(const simulation *s);
 

@@ -29,7 +29,12 @@ static status turn_effect(scene *now, const knob *k, knob_place p, const double 
     memcpy(values->value[p.key], value, (size_t)k->components * sizeof *value);
     values->given[p.key] = true;
     if (e->parameters[p.key].twin) twin = effect_parameter(e, e->parameters[p.key].twin);
-    if (twin >= 0) values->given[twin] = false;
+    if (twin >= 0) {
+        values->given[twin] = false;
+        memcpy(values->value[twin], e->parameters[twin].fallback, sizeof values->value[twin]);
+    }
+    const effect_values *all = p.material < 0 ? now->effects : now->materials[p.material].effects;
+    if (e->turned) e->turned(values, all + (e->engine == ENGINE_SHEET ? sheet_effects_first() : 0), p.key);
     return p.material < 0 ? resolve_scene(now, p.effect, r) : scene_check_material(now, p.material, r);
 }
 

@@ -202,7 +202,9 @@ static status solve_effects(solid *s, real dt, report *r) {
         bool done = false; /* one solve serves all damage models */
         for (int before = 0; before < e; before++) done |= (s->mask >> before & 1) && effects[before]->stages->solve == effects[e]->stages->solve;
         if (done) continue;
+        double start = now();
         status code = effects[e]->stages->solve(s, dt, r);
+        s->solving[e] += now() - start;
         if (code != STATUS_OK) return code;
     }
     return STATUS_OK;
@@ -211,7 +213,9 @@ static status solve_effects(solid *s, real dt, report *r) {
 static status constrain(solid *s, real dt, report *r) {
     for (int e = 0; e < s->effect_count; e++) {
         if (!(s->mask >> e & 1) || !effects[e]->stages->constrain) continue;
+        double start = now();
         status code = effects[e]->stages->constrain(s, dt, r);
+        s->solving[e] += now() - start;
         if (code != STATUS_OK) return code;
     }
     return STATUS_OK;
@@ -267,7 +271,7 @@ static void refresh(solid *s) {
 }
 
 static int components(const solid *s, const char *field) {
-    return particles_read(s, field, NULL);
+    return solid_read(s, field, NULL);
 }
 
 static double bytes_per_particle(const solid *s) {
@@ -284,6 +288,20 @@ static double bytes_per_particle(const solid *s) {
 
 static void phases(const solid *s, double seconds[SOLID_PHASES]) {
     memcpy(seconds, s->seconds, sizeof s->seconds);
+}
+
+/* Of the passes the blocks that looked at the clock tell the shares. */
+static void effort(const solid *s, double seconds[SOLID_PHASES][EFFECT_LIMIT]) {
+    static const int phase_of[PASSES] = {[PASS_P2G] = PHASE_P2G, [PASS_G2P] = PHASE_G2P};
+    memset(seconds, 0, SOLID_PHASES * sizeof *seconds);
+    for (int pass = 0; pass < PASSES; pass++) {
+        double all = 0;
+        for (int w = 0; w < s->threads; w++) all += s->workers[w].clocks[pass].all;
+        for (int w = 0; w < s->threads && all > 0; w++)
+            for (int e = 0; e < s->effect_count; e++)
+                seconds[phase_of[pass]][e] += s->workers[w].clocks[pass].effect[e] / all * s->seconds[phase_of[pass]];
+    }
+    memcpy(seconds[PHASE_GRID], s->solving, sizeof s->solving);
 }
 
 int solid_stage_names(const stage_place *places, int place_count, uint32_t mask, char (*text)[48], int limit) {
@@ -323,6 +341,7 @@ static bool knows(const effect *e) {
 const solid_engine solid_engine_table = {
     .simd = TEXT(SOLID_SIMD_NAME), .precision = SUNDER_PRECISION, .effects = effects, .effect_count = SOLID_EFFECTS,
     .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .sort = begin_frame, .step = step,
-    .measure = solid_measure, .read = particles_read, .components = components, .save = solid_save, .restore = solid_restore,
+    .measure = solid_measure, .read = solid_read, .components = components, .save = solid_save, .restore = solid_restore,
     .stages = stage_names, .knows = knows, .surround = surround, .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = phases,
+    .phase_names = {"sort", "p2g", "grid", "g2p"}, .effort = effort,
 };

@@ -136,3 +136,28 @@ status solid_measure(const solid *s, solid_measures *m, report *r) {
     memcpy(m->grip_impulse, s->grip_impulse, sizeof m->grip_impulse);
     return STATUS_OK;
 }
+
+/* ---- stress ------------------------------------------------------------------------------------------------------ */
+
+static void read_tile_stress(const solid *s, const solid_tile *tile, double *out) {
+    tile_work w = {.state = s, .tile = tile, .scratch = &s->workers[0].tile};
+    for (int p = 0; p < TILE_PARTICLES; p++) w.scratch->degradation[p] = 1;
+    for (int pass = 0; pass < 2; pass++)
+        for (int e = 0; e < s->effect_count; e++) {
+            if (!(s->material_mask[tile->material] >> e & 1)) continue;
+            void (*stage)(tile_work *) = pass ? s->effects[e]->stages->stress : s->effects[e]->stages->degrade;
+            w.constants = s->constants[tile->material][e];
+            w.effect = e;
+            if (stage) stage(&w);
+        }
+    for (int p = 0; p < tile->count; p++) {
+        int64_t id = s->id[(tile->first_pack + p / PACK) * PACK + p % PACK];
+        for (int c = 0; c < 6; c++) out[6 * id + c] = (double)scratch_at(w.scratch->kirchhoff, 6, p / PACK, c, 0)[p % PACK];
+    }
+}
+
+int solid_read(const solid *s, const char *field, double *out) {
+    if (strcmp(field, "kirchhoff_stress") != 0) return particles_read(s, field, out);
+    for (int32_t t = 0; out && t < s->tile_count; t++) read_tile_stress(s, &s->tiles[t], out);
+    return 6;
+}

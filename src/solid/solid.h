@@ -94,8 +94,8 @@ typedef struct solid_engine {
     /* One step of symplectic Euler. STATUS_DIVERGED when the new state is not finite or runs away; `fault` says where. */
     status (*step)(solid *s, double dt, solid_fault *fault, report *r);
     status (*measure)(const solid *s, solid_measures *m, report *r); /* errors: out of memory */
-    /* Copies a field in order of id into out[count][components]: "position", "velocity", "deformation_gradient", "affine_velocity", "volume", or a
-     * field of an effect that is on. Returns components, 0 when there is no such field. */
+    /* Copies a field in order of id into out[count][components]: "position", "velocity", "deformation_gradient", "affine_velocity", "volume", "kirchhoff_stress"
+     * (of the effects' stress stages: xx yy zz xy yz xz; particles only), or a field of an effect that is on. Returns components, 0 when there is no such field. */
     int (*read)(const solid *s, const char *field, double *out);
     /* Components of such a field, 0 when there is none. */
     int (*components)(const solid *s, const char *field);
@@ -111,9 +111,11 @@ typedef struct solid_engine {
     void (*surround)(solid *s, const double gravity[3], double damping);
     /* A knob was turned: values in the definition's materials changed. Between frames. */
     void (*refresh)(solid *s);
-    /* Bytes a particle, and seconds spent by phase since the start: sort, p2g, grid, g2p. */
+    /* Bytes a particle; seconds of steps since the start, by phase; and how much of each phase is which effect's (NULL: not known). */
     double (*bytes_per_particle)(const solid *s);
+    const char *phase_names[SOLID_PHASES]; /* NULL: no such phase */
     void (*phases)(const solid *s, double seconds[SOLID_PHASES]);
+    void (*effort)(const solid *s, double seconds[SOLID_PHASES][EFFECT_LIMIT]);
 } solid_engine;
 
 /* The engine for a precision (32, 64) and instruction set ("auto": the best that this processor has; "plain", "avx2",

@@ -64,7 +64,14 @@ typedef struct tile_scratch {
     real wave_modulus[TILE_PACKS * PACK];     // ρ0 c², summed over effects
     real old_velocity[TILE_PACKS * 3 * PACK]; // FLIP: the grid's velocity before forces, at the particles
     real records[TILE_PARTICLES * 32];        // per particle, for scatter and gather
+    double *lap;                              // [EFFECT_LIMIT], seconds of each effect's stages; NULL: nobody looks at the clock
 } tile_scratch;
+
+/* A few blocks of each pass look at the clock, which ones changes from step to step: they tell what share of a pass is whose. */
+enum { PASS_P2G, PASS_G2P, PASSES, BLOCKS_A_LOOK = 16 };
+typedef struct pass_clock {
+    double all, effect[EFFECT_LIMIT];
+} pass_clock;
 
 typedef struct solid_worker {
     tile_scratch tile;
@@ -72,6 +79,7 @@ typedef struct solid_worker {
     real old_window[WINDOW_NODES * NODE]; // FLIP only
     real damage_window[WINDOW_NODES * DAMAGE_NODE];
     real implicit_window[WINDOW_NODES * IMPLICIT_WINDOWS]; // what is solved for on the grid: planes
+    pass_clock clocks[PASSES];
 } solid_worker;
 
 /* What the implicit solve needs of a material. */
@@ -189,7 +197,8 @@ struct solid {
     double limits[EFFECT_LIMIT]; /* 1/Δt, from the current state */
     bool sorted;
     double grip_work, grip_impulse[3];
-    double seconds[SOLID_PHASES];
+    double seconds[SOLID_PHASES], solving[EFFECT_LIMIT]; /* by phase; of the grid's, by the effect that solves there */
+    int64_t looks; /* passes so far: which blocks look at the clock */
 };
 
 /* One tile in the hands of a stage. */
@@ -288,8 +297,9 @@ SIMD_INLINE vec implicit_damage(vec d, vec H, vec spread, vec rate) {
     vec solved = vec_fma(rate, d, H + spread) / (H + (rate + 1));
     return vec_min(vec_max(solved, d), vec_all(1));
 }
-/* measure.c */
+/* measure.c; reading: particles_read, and what stages compute */
 status solid_measure(const solid *s, solid_measures *m, report *r);
+int solid_read(const solid *s, const char *field, double *out);
 /* snapshot.c */
 status solid_save(const solid *s, record_list *list, report *r);
 status solid_restore(solid *s, const record_list *list, report *r);

@@ -315,4 +315,5 @@ const solid_engine solid_tetra_table = {
     .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .sort = sort, .step = step,
     .measure = tetra_measure, .read = tetra_read, .components = tetra_components, .save = tetra_save, .restore = tetra_restore,
     .stages = stage_names, .knows = knows, .surround = surround, .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = phases,
+    .phase_names = {[PHASE_ELEMENTS] = "elements", [PHASE_VERTICES] = "vertices", [PHASE_LIMITS] = "limits"},
 };

@@ -10,6 +10,7 @@
 #include "solid/records.h"
 
 #include <stddef.h>
+#include <time.h>
 
 /* ---- particles to grid ------------------------------------------------------------------------------------------- */
 
@@ -108,6 +109,25 @@ SIMD_INLINE void scatter_damage(const tile_work *w, kernel_kind kernel, int node
     for (int p = 0; p < w->tile->count;) p = scatter_damage_run(w->scratch->records, p, w->tile->count, nodes, window);
 }
 
+static double seconds_now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Whether a block looks at the clock; what it starts from. */
+static double start_look(solid *s, int64_t block, int worker, int pass) {
+    if ((block + s->looks) % BLOCKS_A_LOOK != 0) return 0;
+    s->workers[worker].tile.lap = s->workers[worker].clocks[pass].effect;
+    return seconds_now();
+}
+
+static void end_look(solid *s, int worker, int pass, double start) {
+    if (start == 0) return;
+    s->workers[worker].clocks[pass].all += seconds_now() - start;
+    s->workers[worker].tile.lap = NULL;
+}
+
 static void call_stage(tile_work *w, size_t stage_offset) {
     const solid *s = w->state;
     for (int e = 0; e < s->effect_count; e++) {
@@ -117,7 +137,9 @@ static void call_stage(tile_work *w, size_t stage_offset) {
         if (!stage) continue;
         w->effect = e;
         w->constants = s->constants[w->tile->material][e];
+        double *lap = w->scratch->lap, start = lap ? seconds_now() : 0;
         stage(w);
+        if (lap) lap[e] += seconds_now() - start;
     }
 }
 
@@ -369,10 +391,15 @@ SIMD_INLINE void block_to_particles(transfer_context *t, int32_t block_index, in
 #define INSTANCE(name, kernel, laplacian, damage)                                                                      \
     static void p2g_##name(void *t, int64_t i, int worker) {                                                           \
         transfer_context *c = t;                                                                                       \
+        double start = start_look(c->state, i, worker, PASS_P2G);                                                      \
         block_to_grid(c, c->blocks[i], worker, kernel, laplacian, damage);                                             \
+        end_look(c->state, worker, PASS_P2G, start);                                                                   \
     }                                                                                                                  \
     static void g2p_##name(void *t, int64_t i, int worker) {                                                           \
+        transfer_context *c = t;                                                                                       \
+        double start = start_look(c->state, i, worker, PASS_G2P);                                                      \
         block_to_particles(t, (int32_t)i, worker, kernel, laplacian, damage);                                          \
+        end_look(c->state, worker, PASS_G2P, start);                                                                   \
     }
 
 INSTANCE(quadratic, KERNEL_QUADRATIC, KERNEL_QUADRATIC, false)
@@ -403,6 +430,7 @@ static void clear_slot(void *context, int64_t slot, int worker) {
 
 void transfer_to_grid(solid *s, real dt) {
     parallel_for(s->threads, s->slot_count, 64, clear_slot, s);
+    s->looks++;
     transfer_context t = {.state = s, .dt = dt};
     block_pass *pass = to_grid[s->definition.kernel == KERNEL_CUBIC][damage_instance(s)];
     for (int colour = 0; colour < s->colour_count; colour++) {

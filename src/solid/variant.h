@@ -67,6 +67,7 @@
 #define solid_measure SOLID_VARIANT(solid_measure)
 #define solid_save SOLID_VARIANT(solid_save)
 #define solid_restore SOLID_VARIANT(solid_restore)
+#define solid_read SOLID_VARIANT(solid_read)
 #define solid_constants_refresh SOLID_VARIANT(solid_constants_refresh)
 
 #endif

@@ -71,3 +71,9 @@ bool frame_exists(const char *folder, int64_t frame) {
     report ignored;
     return path_format(path, &ignored, "%s/frames/%06" PRId64 ".hdf", folder, frame) == STATUS_OK && access(path, F_OK) == 0;
 }
+
+bool checkpoint_exists(const char *folder, int64_t frame) {
+    char path[FILE_PATH];
+    report ignored;
+    return path_format(path, &ignored, "%s/checkpoint-%06" PRId64 ".hdf", folder, frame) == STATUS_OK && access(path, F_OK) == 0;
+}

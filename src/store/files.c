@@ -143,6 +143,10 @@ status file_write_atomic(const char *path, const char *text, size_t size, report
     return file_write_whole(path, text, size, r);
 }
 
+status file_read_text(const char *path, char **text, size_t *size, report *r) {
+    return file_read_whole(path, text, size, r);
+}
+
 /* The pid in ".NAME.PID.tmp", or 0 when the name is not one of our temporaries. */
 static long temporary_pid(const char *name) {
     size_t length = strlen(name), suffix = strlen(TEMPORARY_SUFFIX);

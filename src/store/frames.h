@@ -60,11 +60,15 @@ status checkpoint_ring(const char *folder, int64_t bytes, int64_t *over, report 
  * whatever happens to the first; where the file system cannot link, they are copied. Files that are there already stay. */
 status frame_adopt(const char *from, const char *folder, int64_t frame, report *r);
 
-/* Whether the folder holds this frame. */
+/* Whether the folder holds this frame, and a checkpoint of it. */
 bool frame_exists(const char *folder, int64_t frame);
+bool checkpoint_exists(const char *folder, int64_t frame);
 
 /* Removes frames (with their views) and checkpoints numbered above `frame`: a resumed run rewrites them. */
 status frame_truncate(const char *folder, int64_t frame, report *r);
+
+/* Reads a whole file: *text has *size bytes and a NUL after them; free *size + 1 bytes. A missing file is STATUS_OK with *text NULL. */
+status file_read_text(const char *path, char **text, size_t *size, report *r);
 
 /* Writes text beside, syncs, renames, syncs the directory. */
 status file_write_atomic(const char *path, const char *text, size_t size, report *r);

@@ -82,9 +82,12 @@ status ledger_turns(ledger *l, const char *id, const ledger_turn *turns, int cou
 typedef status (*ledger_turn_taker)(void *context, const ledger_turn *turn, report *r);
 status ledger_each_turn(ledger *l, const char *id, ledger_turn_taker take, void *context, report *r);
 
-/* Copies frames with their measures, and events, of a run up to `frame` to another run, which has none of them yet: a branch has its past in its own
- * rows. */
+/* Copies frames with their measures, and events, of a run up to `frame` to another run, which has none of them yet, and where its scene
+ * was: a branch has its past in its own rows. */
 status ledger_copy_past(ledger *l, const char *from, const char *id, int64_t frame, report *r);
+
+/* Forgets what a resumed run will tell again: events of later frames, and the turns of this one. */
+status ledger_cut_events(ledger *l, const char *id, int64_t frame, report *r);
 
 /* Ends a run: status is "done", "failed", "interrupted" ("dead" is for runs that could not say so themselves);
  * summary_json is the `run --json` object. */

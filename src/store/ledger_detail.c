@@ -7,6 +7,7 @@ const char detail_parameters_sql[] =
     "SELECT name, number, text, unit, from_set FROM run_parameters WHERE run = ?1 ORDER BY name";
 const char detail_measures_sql[] = "SELECT name, value FROM final_measures WHERE run = ?1 ORDER BY name";
 const char detail_events_sql[] = "SELECT frame, happened, kind, text FROM events WHERE run = ?1 ORDER BY event";
+const char detail_turns_sql[] = "SELECT frame, path, value FROM knob_turns WHERE run = ?1 ORDER BY turn";
 const char detail_notes_sql[] = "SELECT written, text FROM notes WHERE run = ?1 ORDER BY note";
 
 status detail_select(ledger *l, int64_t run, sqlite3_stmt **statement, report *r) {
@@ -130,6 +131,16 @@ static status json_event(void *context, sqlite3_stmt *statement, report *r) {
     return STATUS_OK;
 }
 
+static status json_turn(void *context, sqlite3_stmt *statement, report *r) {
+    (void)r;
+    json_object(context);
+    json_member_integer(context, "frame", sqlite3_column_int64(statement, 0));
+    json_member_string(context, "path", detail_text(statement, 1));
+    json_member_string(context, "value", detail_text(statement, 2));
+    json_object_end(context);
+    return STATUS_OK;
+}
+
 static status json_note(void *context, sqlite3_stmt *statement, report *r) {
     (void)r;
     json_object(context);
@@ -229,6 +240,7 @@ status detail_json(ledger *l, json_writer *w, int64_t run, bool whole, report *r
     if (!s) s = json_rows(l, w, "measures", true, detail_measures_sql, run, json_measure, r);
     if (!s && whole)
         s = json_rows(l, w, "parameter_details", false, detail_parameters_sql, run, json_parameter_detail, r);
+    if (!s && whole) s = json_rows(l, w, "turns", false, detail_turns_sql, run, json_turn, r);
     if (!s && whole) s = json_rows(l, w, "events", false, detail_events_sql, run, json_event, r);
     if (!s && whole) s = json_rows(l, w, "notes", false, detail_notes_sql, run, json_note, r);
     if (!s && whole) {

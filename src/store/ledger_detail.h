@@ -65,6 +65,7 @@ status detail_json_print(json_writer *w, status outcome, FILE *out, report *r);
 extern const char detail_parameters_sql[]; /* name, number, text, unit, from_set; by name */
 extern const char detail_measures_sql[];   /* name, value; of the last frame, by name */
 extern const char detail_events_sql[];     /* frame, happened, kind, text */
+extern const char detail_turns_sql[];      /* frame, path, value; in the order in which they act */
 extern const char detail_notes_sql[];      /* written, text */
 
 #endif

@@ -77,7 +77,24 @@ status ledger_copy_past(ledger *l, const char *from, const char *id, int64_t fra
     if (!s)
         s = copy_rows(l,
                       "INSERT INTO events (run, frame, happened, kind, text) SELECT ?2, frame, happened, kind, text FROM events "
-                      "WHERE run = ?1 AND frame <= ?3 ORDER BY event",
+                      "WHERE run = ?1 AND (frame < ?3 OR (frame = ?3 AND kind <> 'knob')) ORDER BY event",
                       source, target, frame, r);
+    if (!s)
+        s = copy_rows(l, "UPDATE runs SET scene_path = (SELECT scene_path FROM runs WHERE run = ?1) WHERE run = ?2 AND ?3 >= 0", source, target, frame, r);
     return ledger_write_end(l, s, "copy a run's past", r);
+}
+
+status ledger_cut_events(ledger *l, const char *id, int64_t frame, report *r) {
+    int64_t run = 0;
+    sqlite3_stmt *statement;
+    status s = ledger_write_begin(l, "forget events", r);
+    if (s) return s;
+    s = ledger_key(l, id, &run, r);
+    if (!s) s = ledger_statement(l, "DELETE FROM events WHERE run = ?1 AND (frame > ?2 OR (frame = ?2 AND kind = 'knob'))", &statement, r);
+    if (!s) {
+        bind_integer(statement, 1, run);
+        bind_integer(statement, 2, frame);
+        s = ledger_run_statement(l, statement, "forget events", r);
+    }
+    return ledger_write_end(l, s, "forget events", r);
 }

@@ -42,11 +42,12 @@ static void commit(const pack_work *w) {
 static void apply_sources(sheet *s, double from, double to) {
     for (int k = 0; k < s->definition.source_count; k++) {
         const sheet_source *source = &s->definition.sources[k];
-        double on = fmin(to, source->stop) - fmax(from, source->start);
+        double on = fmin(to, source->stop) - fmax(from, source->start), strength = s->feeds[k].strength;
+        if (s->feeds[k].off) continue;
         if (source->fixed ? !(to >= source->start && to < source->stop) : !(on > 0)) continue;
         for (int64_t i = 0; i < source->count; i++) {
             real *theta = s->node + (int64_t)s->place[source->particle[i]] * NODE + 3;
-            *theta = source->fixed ? (real)source->value[i] : *theta + (real)(on * source->value[i]);
+            *theta = source->fixed ? (real)(strength * source->value[i]) : *theta + (real)(on * (strength * source->value[i]));
         }
     }
 }

@@ -12,6 +12,14 @@ static void declare(const effect_values *own, sheet_plan *p) {
     p->untrapped = own->value[KEY_TRAPPING][0] == 0;
 }
 
+/* One of the two holds, but where bonds are plastic: those have both. */
+static void turned(effect_values *own, const effect_values *all, int key) {
+    if (all[SHEET_EFFECT_elastoplastic].on || (key != KEY_G && key != KEY_STRETCH) || !(own->value[key][0] > 0)) return;
+    int other = key == KEY_G ? KEY_STRETCH : KEY_G;
+    own->value[other][0] = 0;
+    own->given[other] = false;
+}
+
 static const char *const criteria[] = {"mechanical", "total", NULL};
 
 static const parameter parameters[] = {
@@ -39,5 +47,5 @@ static const sheet_stages stages = {.declare = declare};
 const effect SHEET_EFFECT(fracture) = {
     .name = "fracture", .engine = ENGINE_SHEET, .scope = SCOPE_MATERIAL, .doc = "bonds break beyond a critical stretch",
     .reference = "sheet paper section 5; METHOD.md section 6", .parameters = parameters, .parameter_count = 4, .fields = fields,
-    .field_count = 1, .measures = measures, .measure_count = 2, .needs = SHEET_ELASTICITY, .sheet = &stages,
+    .field_count = 1, .measures = measures, .measure_count = 2, .turned = turned, .needs = SHEET_ELASTICITY, .sheet = &stages,
 };

@@ -74,15 +74,21 @@ static void update_tiles(const view_canvas *canvas, tiles *t) {
     }
 }
 
-/* The depths between which the particles lie; false when none is finite. */
+/* Where a point lands; false when it is not finite or cut away. */
+static bool place(const view_projection *projection, const float point[3], float at[3]) {
+    if (view_is_cut(projection, point)) return false;
+    view_project(projection, point, at);
+    return isfinite(at[0] + at[1] + at[2]);
+}
+
+/* The depths between which the particles lie; false when there is none to draw. */
 static bool depth_range(const view_projection *projection, const float *position, int64_t count, float *low,
                         float *high) {
     *low = INFINITY;
     *high = -INFINITY;
     for (int64_t i = 0; i < count; i++) {
         float at[3];
-        view_project(projection, position + 3 * i, at);
-        if (!isfinite(at[0] + at[1] + at[2])) continue;
+        if (!place(projection, position + 3 * i, at)) continue;
         *low = fminf(*low, at[2]);
         *high = fmaxf(*high, at[2]);
     }
@@ -103,8 +109,7 @@ static void draw_slices(view_canvas *canvas, const view_projection *projection, 
         update_tiles(canvas, &t);
         for (int64_t i = 0; i < count; i++) {
             float at[3];
-            view_project(projection, position + 3 * i, at);
-            if (!isfinite(at[0] + at[1] + at[2])) continue;
+            if (!place(projection, position + 3 * i, at)) continue;
             int mine = (int)((at[2] - low) / per_slice);
             if ((mine < SLICES ? mine : SLICES - 1) == slice) draw_sphere(canvas, &t, at, value_at(value, i), radius);
         }
@@ -121,8 +126,7 @@ void view_canvas_draw(view_canvas *canvas, const view_projection *projection, co
     }
     for (int64_t i = 0; i < count; i++) {
         float at[3];
-        view_project(projection, position + 3 * i, at);
-        if (!isfinite(at[0] + at[1] + at[2])) continue;
+        if (!place(projection, position + 3 * i, at)) continue;
         if (pixels > 0.75f) {
             draw_sphere(canvas, NULL, at, value_at(value, i), pixels);
         } else {

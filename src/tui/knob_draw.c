@@ -1,0 +1,150 @@
+/* How the knobs look. */
+#include "tui/knob_panel.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { DETAIL_ROWS = 6, WIDE = 64, NAME_NARROW = 15, NAME_WIDE = 20, VALUE = 11 };
+
+static bool changed(const knob *k) {
+    return memcmp(k->value, k->start, sizeof k->value) != 0;
+}
+
+/* "damage · tube": the group that the rows below belong to. */
+static void draw_group(tui_theme *theme, tui_area area, int row, const knob *k) {
+    char note[64];
+    snprintf(note, sizeof note, "%.60s", k->owner[0] && k->effect[0] ? k->owner : "");
+    const char *name = k->effect[0] ? k->effect : k->owner[0] ? k->owner : "scene";
+    draw_heading(theme, area, row, name, note[0] ? note : NULL);
+}
+
+/* ──┼───●───: where the value is, and where it began. */
+static void draw_slider(tui_theme *theme, tui_area area, int row, int column, int width, const knob *k, int component) {
+    if (width < 4 || k->kind == PARAMETER_CHOICE || k->kind == PARAMETER_BOOLEAN) return;
+    int now = (int)lrint(knob_place(k, k->value[component]) * (width - 1));
+    int start = (int)lrint(knob_place(k, k->start[component]) * (width - 1));
+    for (int i = 0; i < width; i++) draw_text(theme, area, row, column + i, STYLE_DIM, i == start ? "┼" : "─");
+    draw_text(theme, area, row, column + now, k->live ? STYLE_PLOT : STYLE_DIM, "●");
+}
+
+/* One side of a row: name, value. */
+static void draw_side(tui_theme *theme, tui_area area, int row, int name_width, const knob *k, bool chosen) {
+    char name[64], value[KNOB_TEXT];
+    snprintf(name, sizeof name, "%.*s", name_width, k->key);
+    knob_show(k, k->value, value);
+    tui_style style = !k->live || k->derived ? STYLE_DIM : STYLE_TEXT;
+    draw_text(theme, area, row, 1, chosen ? STYLE_HEAD : style, name);
+    if (chosen) draw_text(theme, area, row, 0, STYLE_HEAD, "▸");
+    tui_style number = changed(k) ? STYLE_WARN : style == STYLE_DIM ? STYLE_DIM : STYLE_STRONG;
+    draw_right(theme, area, row, name_width + 1 + VALUE, number, value);
+}
+
+static void draw_knob(const knob_panel *panel, tui_theme *theme, tui_area area, int row, int index) {
+    const knob_row *r = &panel->rows[index];
+    bool here = index == panel->cursor;
+    int name_width = area.width >= WIDE ? NAME_WIDE : NAME_NARROW, used = name_width + VALUE + 2;
+    const knob *k = &panel->list[r->knob];
+    if (r->twin < 0 || area.width < 2 * used - NAME_WIDE / 2) {
+        /* Too narrow for both: the side under the cursor, and a mark that there is another. */
+        const knob *side = here && panel->on_twin && r->twin >= 0 ? &panel->list[r->twin] : k;
+        draw_side(theme, area, row, name_width, side, here);
+        if (r->twin >= 0) {
+            char twin[64];
+            const knob *back = side == k ? &panel->list[r->twin] : k;
+            snprintf(twin, sizeof twin, "= %.*s", area.width > used + 3 ? area.width - used - 3 : 0, back->key);
+            draw_text(theme, area, row, used, STYLE_DIM, twin);
+        } else if (side->components == 1) {
+            draw_slider(theme, area, row, used, area.width - used, side, 0);
+        }
+        return;
+    }
+    draw_side(theme, area, row, name_width, k, here && !panel->on_twin);
+    draw_text(theme, area, row, used, STYLE_DIM, "=");
+    tui_area right = {area.y, area.x + used + 2, area.height, area.width - used - 2};
+    draw_side(theme, right, row, name_width < right.width - VALUE - 2 ? name_width : right.width - VALUE - 2, &panel->list[r->twin],
+              here && panel->on_twin);
+}
+
+/* ---- the current one --------------------------------------------------------------------------------------------- */
+
+/* Writes text over up to `rows` rows, broken at spaces; returns the rows used. */
+static int draw_wrapped(tui_theme *theme, tui_area area, int row, int rows, tui_style style, const char *text) {
+    int used = 0;
+    while (*text && used < rows) {
+        int fits = 0, last_space = -1;
+        for (int i = 0; text[i]; i++) {
+            char part[256];
+            if (text[i] == ' ') last_space = i;
+            snprintf(part, sizeof part, "%.*s", i + 1, text);
+            if (draw_width(part) > area.width) break;
+            fits = i + 1;
+        }
+        if (fits == 0) break;
+        int length = text[fits] && last_space > 0 ? last_space : fits;
+        draw_format(theme, area, row + used, 0, style, "%.*s", length, text);
+        text += length;
+        while (*text == ' ') text++;
+        used++;
+    }
+    return used;
+}
+
+static void range_text(const knob *k, char *text, size_t size) {
+    char low[32] = "", high[32] = "", fallback[KNOB_TEXT], start[KNOB_TEXT];
+    knob_show(k, k->fallback, fallback);
+    knob_show(k, k->start, start);
+    if (k->kind == PARAMETER_CHOICE || k->kind == PARAMETER_BOOLEAN) {
+        snprintf(text, size, "default %s  start %s", fallback, start);
+        return;
+    }
+    if (isfinite(k->minimum)) snprintf(low, sizeof low, "%.4g", k->minimum);
+    if (isfinite(k->maximum)) snprintf(high, sizeof high, "%.4g", k->maximum);
+    snprintf(text, size, "%s … %s  default %s  start %s", low[0] ? low : "-", high[0] ? high : "-", fallback, start);
+}
+
+/* Name and unit, doc, range, and whether it acts at once. */
+static void draw_detail(const knob_panel *panel, tui_theme *theme, tui_area area) {
+    const knob *k = knob_panel_current(panel);
+    if (!k) return;
+    char text[256], value[KNOB_TEXT];
+    draw_heading(theme, area, 0, k->path, k->unit[0] && strcmp(k->unit, "1") != 0 ? k->unit : NULL);
+    int row = 1;
+    if (k->components > 1) {
+        knob_show(k, k->value, value);
+        row += draw_wrapped(theme, area, row, 1, STYLE_STRONG, value);
+        draw_format(theme, area, row - 1, draw_width(value) + 1, STYLE_DIM, "arrows: %c", "xyz"[panel->component]);
+    }
+    row += draw_wrapped(theme, area, row, area.height - row - 2, STYLE_TEXT, k->doc);
+    range_text(k, text, sizeof text);
+    row += draw_wrapped(theme, area, row, area.height - row - 1 > 2 ? 2 : 1, STYLE_DIM, text);
+    if (k->derived) {
+        draw_wrapped(theme, area, row, area.height - row, STYLE_DIM, "follows from its twin; turning it makes that follow");
+    } else if (k->live) {
+        draw_wrapped(theme, area, row, 1, STYLE_GOOD, "live: acts at the next frame");
+    } else {
+        snprintf(text, sizeof text, "%.*s; R restarts", 200, k->why_not[0] ? k->why_not : "needs a restart");
+        draw_wrapped(theme, area, row, area.height - row, STYLE_WARN, text);
+    }
+}
+
+void knob_panel_draw(knob_panel *panel, tui_theme *theme, tui_area area) {
+    if (panel->row_count == 0) {
+        draw_text(theme, area, 0, 0, STYLE_DIM, "no knobs yet");
+        return;
+    }
+    int detail = area.height >= 14 ? DETAIL_ROWS + (area.height >= 30) : area.height >= 8 ? 3 : 0;
+    int rows = area.height - detail;
+    /* The group's heading stays in view above its first row. */
+    int wanted = panel->cursor > 0 && panel->rows[panel->cursor - 1].heading ? panel->cursor - 1 : panel->cursor;
+    if (wanted < panel->top) panel->top = wanted;
+    if (panel->cursor >= panel->top + rows) panel->top = panel->cursor - rows + 1;
+    if (panel->top > panel->row_count - rows) panel->top = panel->row_count > rows ? panel->row_count - rows : 0;
+    tui_area list = {area.y, area.x, rows, area.width};
+    for (int i = 0; i < rows && panel->top + i < panel->row_count; i++) {
+        const knob_row *row = &panel->rows[panel->top + i];
+        if (row->heading) draw_group(theme, list, i, &panel->list[row->knob]);
+        else draw_knob(panel, theme, list, i, panel->top + i);
+    }
+    draw_detail(panel, theme, (tui_area){area.y + rows, area.x, detail, area.width});
+}

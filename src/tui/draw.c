@@ -34,7 +34,8 @@ static uint32_t to_ascii(uint32_t point) {
     static const struct {
         uint32_t point;
         char ascii;
-    } table[] = {{0x2500, '-'}, {0x2502, '|'}, {0xb7, '-'}, {0x2026, '~'}, {0x2013, '-'}, {0xd7, 'x'}, {0x2588, '#'}};
+    } table[] = {{0x2500, '-'}, {0x2502, '|'}, {0xb7, '-'}, {0x2026, '~'}, {0x2013, '-'}, {0xd7, 'x'}, {0x2588, '#'},
+               {0x25cf, 'o'},  {0x253c, '+'},  {0x25b8, '>'}, {0x254c, '.'},  {0x25b2, '^'},  {0x25c6, 'X'}, {0x2212, '-'}};
     if (point < 0x7f) return point;
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
         if (table[i].point == point) return (uint32_t)(unsigned char)table[i].ascii;

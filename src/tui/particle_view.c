@@ -81,11 +81,12 @@ static void follow_scale(particle_view *view, const particle_points *points) {
     const char *name = points->name ? points->name : "";
     if (strcmp(view->scaled, name) != 0) {
         snprintf(view->scaled, sizeof view->scaled, "%s", name);
-        view->scale = points->natural;
+        view->scale = (view_scale){0, 0};
         view->scale_is_set = false;
     }
-    if (view->scale_is_set || !points->scalar || points->natural.high > points->natural.low) return;
-    view->scale = view_scale_join(view->scale, view_scale_fit(points->scalar, points->count));
+    if (view->scale_is_set || !points->scalar) return;
+    bool has_natural = points->natural.high > points->natural.low;
+    view->scale = has_natural ? points->natural : view_scale_join(view->scale, view_scale_fit(points->scalar, points->count));
 }
 
 void particle_view_follow(particle_view *view, const particle_points *points, const float minimum[3], const float maximum[3]) {

@@ -15,7 +15,7 @@ typedef struct particle_points {
     const float *scalar;   /* [count]; NULL: one colour */
     int64_t count;
     const char *name, *unit; /* of the scalar */
-    view_scale natural;      /* the scale that the scalar always has, such as damage's 0 to 1; empty: as its values are */
+    view_scale natural;      /* the scale that whoever draws wants, such as damage's 0 to 1; empty: as the values are */
 } particle_points;
 
 typedef struct particle_view {

@@ -35,14 +35,14 @@ void timeline_draw(const timeline *line, tui_theme *theme, tui_area area, int ro
     int now = column_of(line, width, line->now);
     for (int i = 0; i < width; i++) {
         if (i <= now) draw_text(theme, area, row, from + i, STYLE_PLOT, "─");
-        else draw_text(theme, area, row, from + i, STYLE_DIM, theme->ascii ? "." : "╌");
+        else draw_text(theme, area, row, from + i, STYLE_DIM, "╌");
     }
     /* What matters most is drawn last: over what shares its column. */
     mark(line, theme, area, row, STYLE_STRONG, theme->ascii ? "o" : "·", line->checkpoints, line->checkpoint_count);
     mark(line, theme, area, row, STYLE_BAD, "!", line->events, line->event_count);
-    mark(line, theme, area, row, STYLE_WARN, theme->ascii ? "^" : "▲", line->turns, line->turn_count);
-    mark(line, theme, area, row, STYLE_STRONG, theme->ascii ? "#" : "█", &line->now, 1);
-    if (line->chosen >= 0) mark(line, theme, area, row, STYLE_HEAD, theme->ascii ? "X" : "◆", &line->chosen, 1);
+    mark(line, theme, area, row, STYLE_WARN, "▲", line->turns, line->turn_count);
+    mark(line, theme, area, row, STYLE_STRONG, "█", &line->now, 1);
+    if (line->chosen >= 0) mark(line, theme, area, row, STYLE_HEAD, "◆", &line->chosen, 1);
 }
 
 int64_t timeline_next(const int64_t *checkpoints, int count, int64_t from, int direction) {

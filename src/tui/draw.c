@@ -110,3 +110,24 @@ void draw_heading(const tui_theme *theme, tui_area area, int row, const char *na
     snprintf(text, sizeof text, " %s", note);
     draw_right(theme, area, row, area.width, STYLE_DIM, text);
 }
+
+int draw_paragraph(const tui_theme *theme, tui_area area, int row, int rows, tui_style style, const char *text) {
+    int used = 0;
+    while (*text && used < rows) {
+        int fits = 0, last_space = -1;
+        for (int i = 0; text[i]; i++) {
+            char part[256];
+            if (text[i] == ' ') last_space = i;
+            snprintf(part, sizeof part, "%.*s", i + 1, text);
+            if (draw_width(part) > area.width) break;
+            fits = i + 1;
+        }
+        if (fits == 0) break;
+        int length = text[fits] && last_space > 0 ? last_space : fits;
+        draw_format(theme, area, row + used, 0, style, "%.*s", length, text);
+        text += length;
+        while (*text == ' ') text++;
+        used++;
+    }
+    return used;
+}

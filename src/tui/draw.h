@@ -33,6 +33,9 @@ void draw_blank(const tui_theme *theme, tui_area area, int row, tui_style style)
 /* A section heading: "── name ─────── note ──" over the row. note may be NULL. */
 void draw_heading(const tui_theme *theme, tui_area area, int row, const char *name, const char *note);
 
+/* Text over at most `rows` rows, broken at spaces; what is beyond the last is cut. Returns the rows used. */
+int draw_paragraph(const tui_theme *theme, tui_area area, int row, int rows, tui_style style, const char *text);
+
 /* The columns that text takes. */
 int draw_width(const char *text);
 

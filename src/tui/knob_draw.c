@@ -68,28 +68,6 @@ static void draw_knob(const knob_panel *panel, tui_theme *theme, tui_area area, 
 
 /* ---- the current one --------------------------------------------------------------------------------------------- */
 
-/* Writes text over up to `rows` rows, broken at spaces; returns the rows used. */
-static int draw_wrapped(tui_theme *theme, tui_area area, int row, int rows, tui_style style, const char *text) {
-    int used = 0;
-    while (*text && used < rows) {
-        int fits = 0, last_space = -1;
-        for (int i = 0; text[i]; i++) {
-            char part[256];
-            if (text[i] == ' ') last_space = i;
-            snprintf(part, sizeof part, "%.*s", i + 1, text);
-            if (draw_width(part) > area.width) break;
-            fits = i + 1;
-        }
-        if (fits == 0) break;
-        int length = text[fits] && last_space > 0 ? last_space : fits;
-        draw_format(theme, area, row + used, 0, style, "%.*s", length, text);
-        text += length;
-        while (*text == ' ') text++;
-        used++;
-    }
-    return used;
-}
-
 static void range_text(const knob *k, char *text, size_t size) {
     char low[32] = "", high[32] = "", fallback[KNOB_TEXT], start[KNOB_TEXT];
     knob_show(k, k->fallback, fallback);
@@ -112,19 +90,19 @@ static void draw_detail(const knob_panel *panel, tui_theme *theme, tui_area area
     int row = 1;
     if (k->components > 1) {
         knob_show(k, k->value, value);
-        row += draw_wrapped(theme, area, row, 1, STYLE_STRONG, value);
+        row += draw_paragraph(theme, area, row, 1, STYLE_STRONG, value);
         draw_format(theme, area, row - 1, draw_width(value) + 1, STYLE_DIM, "arrows: %c", "xyz"[panel->component]);
     }
-    row += draw_wrapped(theme, area, row, area.height - row - 2, STYLE_TEXT, k->doc);
+    row += draw_paragraph(theme, area, row, area.height - row - 2, STYLE_TEXT, k->doc);
     range_text(k, text, sizeof text);
-    row += draw_wrapped(theme, area, row, area.height - row - 1 > 2 ? 2 : 1, STYLE_DIM, text);
+    row += draw_paragraph(theme, area, row, area.height - row - 1 > 2 ? 2 : 1, STYLE_DIM, text);
     if (k->derived) {
-        draw_wrapped(theme, area, row, area.height - row, STYLE_DIM, "follows from its twin; turning it makes that follow");
+        draw_paragraph(theme, area, row, area.height - row, STYLE_DIM, "follows from its twin; turning it makes that follow");
     } else if (k->live) {
-        draw_wrapped(theme, area, row, 1, STYLE_GOOD, "live: acts at the next frame");
+        draw_paragraph(theme, area, row, 1, STYLE_GOOD, "live: acts at the next frame");
     } else {
         snprintf(text, sizeof text, "%.*s; R restarts", 200, k->why_not[0] ? k->why_not : "needs a restart");
-        draw_wrapped(theme, area, row, area.height - row, STYLE_WARN, text);
+        draw_paragraph(theme, area, row, area.height - row, STYLE_WARN, text);
     }
 }
 

@@ -85,7 +85,7 @@ static void range_text(const knob *k, char *text, size_t size) {
 static void draw_detail(const knob_panel *panel, tui_theme *theme, tui_area area) {
     const knob *k = knob_panel_current(panel);
     if (!k) return;
-    char text[256], value[KNOB_TEXT];
+    char text[512], value[KNOB_TEXT];
     draw_heading(theme, area, 0, k->path, k->unit[0] && strcmp(k->unit, "1") != 0 ? k->unit : NULL);
     int row = 1;
     if (k->components > 1) {

@@ -91,3 +91,13 @@ int widget_damage(const tui_app *app, tui_area area, int row) {
     line(app, area, row + 3, "largest", text, offsetof(session_sample, damage_max));
     return 4;
 }
+
+int widget_pace(const tui_app *app, tui_area area, int row) {
+    char number[FORMAT_BYTES];
+    draw_heading(&app->theme, area, row, "pace", NULL);
+    format_real(app->shot->now.dt, number);
+    line(app, area, row + 1, "dt", number, offsetof(session_sample, dt));
+    format_seconds(app->shot->now.seconds, number);
+    line(app, area, row + 2, "frame", number, offsetof(session_sample, seconds));
+    return 3;
+}

@@ -113,13 +113,14 @@ static bool bounded(const knob *k) {
     return isfinite(k->minimum) && isfinite(k->maximum) && k->maximum > k->minimum;
 }
 
-/* A size to step a knob by that has no range: its value's, else what it began with, else one. */
+/* A size to step a knob by that has no range: what it began with (a vector: its largest component), so that steps back lead to where one
+ * came from; its own where it has left that far behind. */
 static double size_of(const knob *k, int component) {
-    const double sizes[] = {k->value[component], k->start[component], k->fallback[component]};
-    for (int i = 0; i < 3; i++) {
-        if (sizes[i] != 0 && isfinite(sizes[i])) return fabs(sizes[i]);
-    }
-    return 1;
+    double size = 0;
+    for (int i = 0; i < k->components; i++) size = fmax(size, fmax(fabs(k->start[i]), fabs(k->fallback[i])));
+    if (size == 0 || !isfinite(size)) size = 1;
+    double own = fabs(k->value[component]);
+    return own > 10 * size ? own : size;
 }
 
 static int choice_count(const knob *k) {

@@ -14,21 +14,21 @@ static int bars_that_fit(int rows) {
 }
 
 void widget_panel(tui_app *app, const run_state *view, tui_area area) {
-    enum { FIXED = 1 + 5 + 4 + 4 + 1, GAPS = 3 }; /* progress, numbers, energy, damage, the histogram's heading */
-    bool roomy = area.height >= 34;
-    int effects = roomy ? 4 : 0;
-    bool histogram = app_has_damage(app);
-    int bars = histogram ? bars_that_fit(area.height - FIXED - roomy - effects) : 0;
-    int spare = area.height - FIXED - roomy - effects - bars;
+    enum { FIXED = 5 + 4 + 4 + 1, GAPS = 4, WORK = 1, PACE = 3, EFFECTS = 4, HISTORY = 9 }; /* numbers, energy, damage, a heading */
+    bool roomy = area.height >= 34, damaged = app_has_damage(app);
+    int fixed = FIXED + (roomy ? WORK + PACE + EFFECTS : 0), history = roomy && damaged ? HISTORY : 0;
+    int bars = damaged ? bars_that_fit(area.height - fixed - history) : 0;
+    int spare = area.height - fixed - history - bars;
     bool gap[GAPS];
     for (int i = 0; i < GAPS; i++) gap[i] = spare-- > 0;
 
-    int row = widget_progress(app, area, 0);
-    row += widget_numbers(app, area, row) + gap[0];
+    int row = widget_numbers(app, area, 0) + gap[0];
     row += widget_energy(app, area, row, roomy) + gap[1];
     row += widget_damage(app, area, row) + gap[2];
+    if (roomy) row += widget_pace(app, area, row) + gap[3];
     if (bars > 0) row += widget_histogram(app, view, area, row, bars);
-    if (roomy) widget_effects(app, area, row + 1, area.height - row - 1);
+    if (history > 0) row += widget_history(app, view, area, row, history + (spare > 4 ? 4 : spare > 0 ? spare : 0));
+    if (roomy) widget_effects(app, area, row, area.height - row);
 }
 
 void widget_strip(tui_app *app, const run_state *view, tui_area area) {

@@ -8,11 +8,6 @@
 /* title.c: program, screens, scene, variant, run id, state. */
 void widget_title(const tui_app *app, tui_area area);
 
-/* particles.c: the picture of the particles, and the camera that follows them. */
-status particles_prepare(const tui_app *app, run_state *view, tui_area area, report *r); /* makes the picture anew if it is old */
-void particles_follow(const tui_app *app, run_state *view);                              /* after a new snapshot */
-void widget_particles(tui_app *app, run_state *view, tui_area area);
-
 /* panel.c: the statistics, stacked for a tall area or in few lines for a flat one. */
 void widget_panel(tui_app *app, const run_state *view, tui_area area);
 void widget_strip(tui_app *app, const run_state *view, tui_area area);
@@ -25,11 +20,20 @@ int widget_effects(const tui_app *app, tui_area area, int row, int rows);
 /* series.c: figures with their history as sparklines. */
 int widget_energy(const tui_app *app, tui_area area, int row, bool with_work);
 int widget_damage(const tui_app *app, tui_area area, int row);
+int widget_pace(const tui_app *app, tui_area area, int row);
 void widget_broken_line(const tui_app *app, tui_area area, int row);
 bool app_has_damage(const tui_app *app);
 
 /* histogram.c: the share of particles by damage, in `bins` bars (a divisor of SESSION_BINS), with a heading. */
 int widget_histogram(tui_app *app, const run_state *view, tui_area area, int row, int bins);
+
+/* run_widgets.c: where the time of steps goes, what has happened, how the histogram came about (`rows` at most, 0 when there is
+ * no room), the histogram with it, and what waits for a restart (over the area's last row). */
+int widget_stages(tui_app *app, tui_area area, int row, int rows);
+int widget_events(tui_app *app, tui_area area, int row, int rows);
+int widget_history(tui_app *app, const run_state *state, tui_area area, int row, int rows);
+void widget_damage_panel(tui_app *app, const run_state *state, tui_area area);
+void widget_pending(tui_app *app, const run_state *state, tui_area area);
 
 /* message.c: a question, a passing notice, a failure, a warning, or how it ended. */
 int message_rows(tui_app *app, int width); /* how many rows it asks for: 1 to 3 */

@@ -110,7 +110,7 @@ static status turn_live(tui_app *app, run_state *state, int index, const double 
     knob_print(k, value, text);
     knob_show(k, value, shown_text);
     snprintf(path, sizeof path, "%s", k->path);
-    status s = session_turn_text(app->run, path, text, r);
+    status s = app_turn(app, path, text, r);
     if (s != STATUS_OK) return s;
     knob_panel_note(&state->knobs, state->knobs.list, index, text);
     reload(app, state);
@@ -205,7 +205,7 @@ status run_knob_type(tui_app *app, const char *argument, report *r) {
 
 /* A turn that is no new one: it is not noted among what can be undone. */
 static status turn_back(tui_app *app, run_state *state, const char *path, const char *value, int by, report *r) {
-    status s = session_turn_text(app->run, path, value, r);
+    status s = app_turn(app, path, value, r);
     if (s != STATUS_OK) return s;
     knob_panel_undone(&state->knobs, by);
     reload(app, state);

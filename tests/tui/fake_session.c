@@ -373,11 +373,6 @@ void session_destroy(session *s) {
     memory_free(s, sizeof *s);
 }
 
-void session_request(const session *s, session_options *out) {
-    (void)s;
-    *out = (session_options){.frames = -1, .precision = 32};
-}
-
 /* The program's runs cannot be started here. */
 status session_start(const session_options *options, session **out, script_reports *reports) {
     *out = NULL;

@@ -20,7 +20,7 @@ typedef struct cli_scene_options {
 
 typedef int command_handler(int count, char **arguments);
 
-command_handler command_run, command_check, command_explain, command_runs, command_render, command_doctor, command_bench, command_sweep, command_help;
+command_handler command_run, command_check, command_explain, command_runs, command_render, command_doctor, command_bench, command_sweep, command_help, command_workbench;
 
 typedef struct command {
     const char *name, *usage, *help;
@@ -29,6 +29,10 @@ typedef struct command {
 
 /* The table of commands and its length. */
 const command *command_table(int *count);
+
+/* Says in two lines what a run that has ended has done. */
+struct session;
+void cli_print_end(struct session *s, FILE *out);
 
 /* What `bench sheet` was asked for. */
 typedef struct sheet_bench_matrix {

@@ -1,7 +1,9 @@
 /* sunder help: the commands; sunder help effects: the reference of all effects, made from their tables. */
 #include "cli/cli.h"
 
+#include "base/json.h"
 #include "sim/scene.h"
+#include "tui/actions.h"
 
 #include <math.h>
 #include <string.h>
@@ -69,12 +71,54 @@ static int print_effects(void) {
     return 0;
 }
 
+/* ---- the workbench's actions -------------------------------------------------------------------------------------- */
+
+static void print_action(const char *name, const tui_action *a) {
+    printf("| `%s`%s%s | %s | %s |\n", name, a->asks ? " " : "", a->asks ? a->asks : "", a->keys_shown ? a->keys_shown : "", a->help);
+}
+
+static void json_action(json_writer *w, const char *name, const action_place *place) {
+    const tui_action *a = place->action;
+    json_object(w);
+    json_member_string(w, "name", name);
+    json_member_string(w, "screen", place->screen ? place->screen->name : NULL);
+    json_member_string(w, "keys", a->keys_shown);
+    json_member_string(w, "argument", a->asks);
+    json_member_boolean(w, "needs_argument", a->argument >= ARGUMENT_TEXT);
+    json_member_boolean(w, "logged", !a->unlogged);
+    json_member_string(w, "help", a->help);
+    json_object_end(w);
+}
+
+static int print_actions(bool json) {
+    json_writer w;
+    report r;
+    action_place place;
+    json_begin(&w, 2);
+    json_array(&w);
+    if (!json) puts("# What the workbench can do\n\nMade by `sunder help actions`. Type `:` and a name, or press the key; `config.lua` binds others.\n\n| action | keys | |\n|---|---|---|");
+    for (int i = 0; actions_at(i, &place); i++) {
+        char name[128];
+        action_name(&place, name, sizeof name);
+        if (json) json_action(&w, name, &place);
+        else print_action(name, place.action);
+    }
+    json_array_end(&w);
+    status code = json_finish(&w, &r);
+    if (json && code == STATUS_OK) puts(w.text);
+    json_free(&w);
+    return code == STATUS_OK ? 0 : cli_fail(&r);
+}
+
 int command_help(int count, char **arguments) {
     if (count == 2 && strcmp(arguments[1], "effects") == 0) return print_effects();
-    if (count > 1) return cli_usage("help", "expected nothing, or 'effects'");
+    if (count >= 2 && strcmp(arguments[1], "actions") == 0 && (count == 2 || (count == 3 && strcmp(arguments[2], "--json") == 0)))
+        return print_actions(count == 3);
+    if (count > 1) return cli_usage("help", "expected nothing, 'effects', or 'actions' and perhaps --json");
     int commands;
     const command *table = command_table(&commands);
-    puts("sunder: a terminal workbench for tearing things\n");
+    puts("sunder: a terminal workbench for tearing things\n\n  sunder [--db FILE]\n      open the workbench\n"
+         "  sunder --replay FILE [--db FILE] [--out DIR]\n      do a workbench's command log again, to the same bits; no terminal needed");
     for (int i = 0; i < commands; i++) printf("  sunder %s\n      %s\n", table[i].usage, table[i].help);
     puts("\nExit codes: 0 done; 1 the simulation failed; 2 the input is wrong; 130 interrupted.");
     return 0;

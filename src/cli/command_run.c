@@ -228,7 +228,7 @@ static void watch_plainly(session *s, FILE *out, bool quiet) {
     session_snapshot_free(&snapshot);
 }
 
-static void print_end(session *s, FILE *out) {
+void cli_print_end(session *s, FILE *out) {
     session_snapshot p = {0};
     session_poll(s, &p);
     fprintf(out, "%s: %lld frames, %lld steps of %lld particles in %.1f s (%.1f M particle-steps/s)\n  %s\n", p.run_id,
@@ -253,6 +253,7 @@ int command_run(int count, char **arguments) {
         tui_options look = tui_options_default();
         look.database = o.session.database;
         (void)tui_workbench(&s, &look, &r);
+        if (!s) return 0;
     } else {
         catch_interrupts(s);
         watch_plainly(s, o.json ? stderr : stdout, o.quiet);
@@ -261,7 +262,7 @@ int command_run(int count, char **arguments) {
     status outcome = session_outcome(s, &r);
     if (outcome != STATUS_OK) (void)cli_fail(&r);
     if (o.json && session_summary(s)) printf("%s\n", session_summary(s));
-    else if (!o.quiet) print_end(s, stdout);
+    else if (!o.quiet) cli_print_end(s, stdout);
     session_destroy(s);
     return status_exit_code(outcome);
 }

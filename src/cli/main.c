@@ -23,7 +23,7 @@ static const command commands[] = {
               "         bench table1 [--paper solid|sheet|both] [--row NAME]… [--frames N] [--warm N] [--paper-dt] [--scale F] [--time-limit S] [--threads N]\n"
               "                      [--precision f32|f64] [--scenes DIR] [--json]",
      "measure how fast steps are, beside what the machine could do; table1: seconds a frame, beside the papers'", command_bench},
-    {"help", "help [effects]", "list the commands, or all effects with their parameters", command_help},
+    {"help", "help [effects | actions] [--json]", "list the commands, all effects with their parameters, or all that the workbench can do", command_help},
 };
 
 const command *command_table(int *count) {
@@ -92,10 +92,11 @@ static int unknown_command(const char *name) {
 int main(int count, char **arguments) {
     setlocale(LC_ALL, "");
     setlocale(LC_NUMERIC, "C"); /* numbers in files and JSON have a point, wherever we are */
-    if (count < 2) return command_help(0, NULL);
+    if (count < 2) return command_workbench(count, arguments);
     const char *name = arguments[1];
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) return command_help(0, NULL);
     if (strcmp(name, "--version") == 0) return puts("sunder " SUNDER_VERSION) < 0;
+    if (strncmp(name, "--", 2) == 0) return command_workbench(count, arguments);
     const command *c = find_command(name);
     return c ? c->handler(count - 1, arguments + 1) : unknown_command(name);
 }

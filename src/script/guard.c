@@ -44,7 +44,12 @@ static bool time_over(guard *g) {
     double now = processor_time();
     g->unlooked = g->unspent = 0;
     if (g->started < 0) g->started = now;
+    if (atomic_load_explicit(&g->interrupted, memory_order_relaxed)) return true;
     return now - g->started > g->time_limit;
+}
+
+void guard_interrupt(guard *g) {
+    atomic_store(&g->interrupted, 1);
 }
 
 static void on_count(lua_State *L, lua_Debug *event);

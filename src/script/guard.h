@@ -9,6 +9,7 @@
 #define SUNDER_SCRIPT_GUARD_H
 
 #include <lua.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -32,6 +33,7 @@ typedef struct guard {
     size_t unspent;       /* work told to guard_spend since the last look */
     guard_reason refused; /* why the allocator last said no */
     bool refusing;        /* it has not said yes since */
+    atomic_int interrupted; /* set from any thread: the time is over */
     guard_reason reason;  /* sticky: why the script was stopped */
     char file[256];       /* where it was stopped, empty if unknown */
     int line;
@@ -62,6 +64,9 @@ void guard_raise(lua_State *L);
  * is not the script's. */
 double guard_pause(void);
 void guard_resume(guard *g, double paused);
+
+/* Stops what runs, from any thread, as if its time were over. */
+void guard_interrupt(guard *g);
 
 /* The guard of a state. */
 guard *guard_of(lua_State *L);

@@ -110,6 +110,10 @@ extern const char KEY_FROZEN, KEY_ENVIRONMENT, KEY_GLOBALS, KEY_MODULES, KEY_REC
 
 script *script_of(lua_State *L);
 
+/* ---- script.c ---- */
+/* A script that has loaded nothing yet: its Lua state is bare. NULL: out of memory. */
+script *script_create(const script_options *options, script_reports *reports);
+
 /* ---- errors.c ---- */
 void throw_report(lua_State *L, const report *r) __attribute__((noreturn));
 /* Raises wrong input at a place; the place's path is the key. */

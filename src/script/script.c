@@ -105,7 +105,7 @@ static void sort_reports(const script *s, script_reports *reports) {
     }
 }
 
-static script *create(const script_options *options, script_reports *reports) {
+script *script_create(const script_options *options, script_reports *reports) {
     script *s = memory_allocate(sizeof *s);
     if (!s) return NULL;
     s->reports = reports;
@@ -126,7 +126,7 @@ static script *create(const script_options *options, script_reports *reports) {
 status script_load(const char *path, const script_options *options, script **out, script_reports *reports) {
     *out = NULL;
     reports->count = 0;
-    script *s = create(options, reports);
+    script *s = script_create(options, reports);
     if (!s) {
         reports->count = 1;
         return report_set(&reports->items[0], STATUS_SYSTEM, "out of memory while %s was loaded", path);
@@ -163,7 +163,7 @@ static int load_sweep_protected(lua_State *L) {
 status sweep_load(const char *path, sweep *out, script_reports *reports) {
     script_options options = script_options_default();
     reports->count = 0;
-    script *s = create(&options, reports);
+    script *s = script_create(&options, reports);
     if (!s) {
         reports->count = 1;
         return report_set(&reports->items[0], STATUS_SYSTEM, "out of memory while %s was loaded", path);

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 static const double notice_time = 4; /* s */
 
@@ -15,6 +16,12 @@ double app_clock(void) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+void app_wake(tui_app *app) {
+    uint64_t one = 1;
+    ssize_t written = write(app->shell->wake, &one, sizeof one);
+    (void)written; /* it is awake already when the counter is full */
 }
 
 /* ---- the message line -------------------------------------------------------------------------------------------- */
@@ -115,6 +122,7 @@ void app_show(tui_app *app, const tui_screen *screen) {
 /* ---- the run ----------------------------------------------------------------------------------------------------- */
 
 void app_end_run(tui_app *app) {
+    log_defer(app);
     if (!app->run || app->ended || app->stopping) return;
     app->stopping = true;
     session_stop(app->run);

@@ -52,6 +52,9 @@ void app_fail(tui_app *app, const report *r);
 /* Seconds on the monotonic clock. */
 double app_clock(void);
 
+/* From any thread: lets the loop look at its screens' `tick` at once. */
+void app_wake(tui_app *app);
+
 /* Brings a screen into view. */
 void app_show(tui_app *app, const tui_screen *screen);
 

@@ -38,6 +38,10 @@ static tui_style compose(tui_app *app, int width, char *text) {
         snprintf(text, MESSAGE_BYTES, "%s", app->notice);
         return app->notice_bad ? STYLE_BAD : STYLE_TEXT;
     }
+    if (shell->replay.active) {
+        snprintf(text, MESSAGE_BYTES, "Doing again %s, line %d.  Q leaves", shell->replay.path, shell->replay.line);
+        return STYLE_WARN;
+    }
     if (app_starting(app)) {
         snprintf(text, MESSAGE_BYTES, "%s", app->ended ? "The run is being set up …" : "The run before is finishing its frame …");
         return STYLE_WARN;

@@ -32,8 +32,8 @@ particle_points run_points(const tui_app *app) {
 }
 
 static const tui_action actions[] = {
-    {"pause", {' '}, "space", "pause", "pause the run after its frame, or go on", .handler = run_pause, .argument = ARGUMENT_MAY, .asks = "on|off"},
-    {"step", {'s'}, "s", "step", "while paused: compute one frame", .handler = run_step},
+    {"pause", {' '}, "space", "pause", "pause the run after its frame, or go on", .handler = run_pause, .argument = ARGUMENT_MAY, .asks = "on|off", .paces = true},
+    {"step", {'s'}, "s", "step", "while paused: compute one frame", .handler = run_step, .paces = true},
     {"knob-up", {KEY_UP}, "up", NULL, "the knob above", .handler = run_knob_up, .unlogged = true},
     {"knob-down", {KEY_DOWN}, "down", NULL, "the knob below", .handler = run_knob_down, .unlogged = true},
     {"knob-more", {KEY_RIGHT}, "right", "turn", "turn the knob up", .handler = run_knob_more, .argument = ARGUMENT_MAY, .asks = "KNOB=VALUE"},
@@ -53,7 +53,7 @@ static const tui_action actions[] = {
     {"knobs-reset", {'Z'}, "Z", NULL, "all knobs as the recipe has them", .handler = run_reset_knobs},
     {"save-recipe", {'w'}, "w", "save", "write a tuned material as a recipe", .handler = run_save_recipe, .argument = ARGUMENT_MAY, .asks = "[MATERIAL] FILE.lua",
      .complete = run_complete_material},
-    {"run-to", {'r'}, "r", NULL, "go on to a frame and pause there", .handler = run_go_to, .argument = ARGUMENT_NUMBER, .asks = "frame"},
+    {"run-to", {'r'}, "r", NULL, "go on to a frame and pause there", .handler = run_go_to, .argument = ARGUMENT_NUMBER, .asks = "frame", .paces = true},
     {"earlier", {'['}, "[", "back", "choose an earlier checkpoint on the line of frames", .handler = run_choose_earlier, .unlogged = true},
     {"later", {']'}, "]", NULL, "choose a later checkpoint", .handler = run_choose_later, .unlogged = true},
     {"choose", {0}, "", NULL, "choose a frame on the line of frames", .handler = run_choose, .argument = ARGUMENT_NUMBER, .asks = "frame",

@@ -38,6 +38,7 @@ typedef struct tui_action {
     /* Completion: writes the index-th candidate for the argument that begins with `text` into out; false when there is
      * none. NULL: no completion. */
     bool (*complete)(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]);
+    bool paces; /* it only says when the run goes on: a replay, which sees to that itself, leaves it out */
     bool unlogged; /* neither a run's bits nor what is seen later depends on it (moves within a list, say) */
 } tui_action;
 
@@ -78,7 +79,7 @@ const tui_screen *tui_screen_find(const char *name);
 void *screen_state(tui_app *app, const tui_screen *screen, report *r);
 
 /* Every screen is one line here: a constant tui_screen named screen_NAME in a file of its own. */
-#define TUI_SCREENS(X) X(scenes) X(run)
+#define TUI_SCREENS(X) X(scenes) X(run) X(console)
 
 #define TUI_SCREEN_DECLARE(name) extern const tui_screen screen_##name;
 TUI_SCREENS(TUI_SCREEN_DECLARE)

@@ -76,12 +76,37 @@ void start_tick(tui_app *app);
 /* Waits for a start under way and gives up what it made. */
 void start_close(tui_app *app);
 
+/* ---- replay.c ---------------------------------------------------------------------------------------------------- */
+
+typedef struct tui_replay {
+    bool active;
+    char path[TUI_PATH];
+    char *text, *next; /* the log; from where it has not been read */
+    size_t capacity;
+    int line;
+    bool read; /* a line has been read and is to be done at its frame */
+    int64_t frame;
+    char name[SHELL_NAME], argument[ACTION_ARGUMENT];
+    int64_t sent_to; /* the frame that the run was let go on to, and which run */
+    const session *sent_run;
+    report outcome; /* what stopped it */
+} tui_replay;
+
+/* Reads a log, to be done again from now on. Errors: no such file. */
+status replay_open(tui_app *app, const char *path, report *r);
+void replay_close(tui_app *app);
+/* Does what is due. */
+void replay_tick(tui_app *app);
+
 /* ---- the whole --------------------------------------------------------------------------------------------------- */
 
 typedef struct tui_shell {
+    int wake; /* an eventfd that other threads write: something for `tick` */
     tui_prompt prompt;
     command_log log;
     run_start start;
+    tui_replay replay;
+    int runs_started;
 
     bool asking; /* a question is on the message line */
     char question[192], yes_action[SHELL_NAME], yes_argument[ACTION_ARGUMENT];

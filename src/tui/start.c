@@ -39,6 +39,13 @@ static status keep_options(tui_app *app, run_start *start, const session_options
     full = full || options->turn_count > START_TURNS;
     if (!full && options->turn_count > 0) memcpy(start->turns, options->turns, (size_t)options->turn_count * sizeof *options->turns);
     o->turns = start->turns;
+    if (app->shell->replay.active) o->start_paused = true; /* until its first line's frame is known */
+    if (app->options.output) {
+        char folder[TUI_PATH];
+        int count = app->shell->runs_started + 1;
+        snprintf(folder, sizeof folder, count == 1 ? "%s" : "%s.%d", app->options.output, count);
+        o->output = keep(start, folder, &full);
+    }
     if (full) return report_set(r, STATUS_INPUT, "too many settings or turns for one run");
     return STATUS_OK;
 }
@@ -52,6 +59,7 @@ status app_start_run(tui_app *app, const session_options *options, report *r) {
     if (start->active) return report_set(r, STATUS_INPUT, "A run is being started already.");
     status s = keep_options(app, start, options, r);
     if (s != STATUS_OK) return s;
+    app->shell->runs_started++;
     start->active = true;
     start->threaded = false;
     start->made = NULL;

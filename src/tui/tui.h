@@ -31,6 +31,9 @@ typedef struct tui_options {
     bool ascii;  /* only ASCII characters; always so when the locale's character set is not UTF-8 */
     bool log_histogram;
     bool leave_at_end; /* else the screen stays after the run until its user quits */
+    const char *replay;   /* a command log to do again; NULL: none */
+    bool headless;        /* no terminal: for a replay, whose end is this function's */
+    const char *output;   /* of the runs that are started: the first one's folder, then "FOLDER.2" …; NULL: by their ids */
     const char *database; /* of the ledger, for runs that are started; NULL: the default one */
 } tui_options;
 
@@ -43,7 +46,8 @@ bool tui_possible(const char **why);
 
 /* Opens the workbench with `*run` in view (NULL: none) until its user leaves. Runs may be started and ended meanwhile:
  * *run is the one in view at the end, ended, and the caller's to destroy (NULL: none); those before it have been. Returns
- * its outcome with its report, as session_outcome does; STATUS_OK without one. What the process wrote to its standard
+ * its outcome with its report, as session_outcome does; STATUS_OK without one; what stopped a replay where that was not its
+ * log's end. What the process wrote to its standard
  * streams meanwhile is repeated on standard error afterwards. First Ctrl-C, SIGTERM, SIGHUP: the frame is finished, then
  * the screen left; second Ctrl-C: left at the next step. Errors of its own: STATUS_SYSTEM when the terminal cannot be
  * used or memory is out; *run then goes on running. */

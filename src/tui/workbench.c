@@ -11,11 +11,13 @@
 #include <math.h>
 #include <poll.h>
 #include <stdio.h>
+#include <sys/eventfd.h>
 #include <unistd.h>
 
 static const double frame_time = 1.0 / 30; /* s; at most 30 redraws a second, and as many looks at the session */
 static const double key_delay = 0.045;     /* s; the longest that a key's effect may wait for its redraw */
 static const double load_share = 0.1;      /* of a core that drawing may take from the simulation */
+static const double replay_time = 0.002;   /* s between two looks while a log is done again */
 enum { KEYS_A_TURN = 256 };
 
 tui_options tui_options_default(void) {
@@ -31,13 +33,16 @@ typedef struct pace {
 /* ---- what comes in ----------------------------------------------------------------------------------------------- */
 
 static void wait_for_input(const tui_app *app, pace *p) {
-    double now = app_clock(), wait = frame_time;
+    double now = app_clock(), wait = app->shell->replay.active ? replay_time : frame_time;
     if (app->notice[0]) wait = fmin(wait, app->notice_until - now);
     if (app->dirty) wait = fmin(wait, p->next_draw - now);
-    struct pollfd inputs[2] = {{.fd = signals_descriptor(), .events = POLLIN},
-                               {.fd = p->hung_up ? -1 : STDIN_FILENO, .events = POLLIN}};
-    if (poll(inputs, 2, (int)ceil(fmax(wait, 0) * 1e3)) > 0 && (inputs[1].revents & (POLLHUP | POLLERR | POLLNVAL)))
+    struct pollfd inputs[3] = {{.fd = signals_descriptor(), .events = POLLIN},
+                               {.fd = p->hung_up || app->headless ? -1 : STDIN_FILENO, .events = POLLIN},
+                               {.fd = app->shell->wake, .events = POLLIN}};
+    if (poll(inputs, 3, (int)ceil(fmax(wait, 0) * 1e3)) > 0 && (inputs[1].revents & (POLLHUP | POLLERR | POLLNVAL)))
         p->hung_up = true;
+    uint64_t count;
+    if (inputs[2].revents & POLLIN && read(app->shell->wake, &count, sizeof count) < 0) return;
 }
 
 static void take_signals(tui_app *app) {
@@ -46,15 +51,23 @@ static void take_signals(tui_app *app) {
         switch ((signal_event)event) {
         case SIGNAL_INTERRUPT: actions_interrupt(app); break;
         case SIGNAL_TERMINATE: actions_terminate(app); break;
-        case SIGNAL_SUSPEND: terminal_suspend(); break;
-        case SIGNAL_CONTINUE: terminal_retake(); break;
-        case SIGNAL_RESIZE: terminal_resize(); break;
+        case SIGNAL_SUSPEND:
+            if (app->headless) signals_stop_self();
+            else terminal_suspend();
+            break;
+        case SIGNAL_CONTINUE:
+            if (!app->headless) terminal_retake();
+            break;
+        case SIGNAL_RESIZE:
+            if (!app->headless) terminal_resize();
+            break;
         }
         app->dirty = true;
     }
 }
 
 static void take_keys(tui_app *app, pace *p) {
+    if (app->headless) return;
     if (p->hung_up) {
         actions_terminate(app);
         return;
@@ -92,6 +105,7 @@ static void take_state(tui_app *app) {
         }
     }
     start_tick(app);
+    replay_tick(app);
     if (app->ended && app->leave_at_end && !app_starting(app)) app->leaving = true;
 }
 
@@ -114,7 +128,7 @@ static void take_time(tui_app *app) {
 
 static void draw_if_due(tui_app *app, pace *p) {
     double start = app_clock();
-    if (!app->dirty || start < p->next_draw) return;
+    if (!app->dirty || start < p->next_draw || app->headless) return;
     app->dirty = false;
     if (app->redraw) clearok(curscr, TRUE);
     app->redraw = false;
@@ -148,11 +162,14 @@ static void log_start(tui_app *app, const session *run) {
 }
 
 static status app_open(tui_app *app, session *run, bool unicode, report *r) {
-    status s = theme_open(&app->theme, app->options.theme, app->options.colours, app->options.ascii || !unicode, r);
+    int colours = app->headless ? 0 : app->options.colours;
+    status s = theme_open(&app->theme, app->options.theme, colours, app->options.ascii || !unicode, r);
     if (s != STATUS_OK) return s;
     app->shot = memory_allocate(sizeof *app->shot);
     app->shell = memory_allocate(sizeof *app->shell);
     if (!app->shot || !app->shell) return report_set(r, STATUS_SYSTEM, "out of memory for the workbench");
+    app->shell->wake = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    if (app->shell->wake < 0) return report_set(r, STATUS_SYSTEM, "no descriptor to wake the workbench by");
     if (app->options.palette != TUI_AUTO) app->theme.palette = (view_palette)app->options.palette;
     app->leave_at_end = app->options.leave_at_end && run;
     if (app->options.database) snprintf(app->database, sizeof app->database, "%s", app->options.database);
@@ -160,6 +177,7 @@ static status app_open(tui_app *app, session *run, bool unicode, report *r) {
     if (run) log_start(app, run);
     app_switch_run(app, run);
     app_show(app, run ? &screen_run : &screen_scenes);
+    if (app->options.replay) return replay_open(app, app->options.replay, r);
     return STATUS_OK;
 }
 
@@ -180,28 +198,43 @@ static void app_close(tui_app *app, status *outcome, report *r) {
         *outcome = session_outcome(app->run, r);
     }
     close_screens(app);
-    if (app->shell) log_close(app);
+    if (app->shell) {
+        if (app->shell->replay.outcome.code != STATUS_OK) {
+            *r = app->shell->replay.outcome;
+            *outcome = r->code;
+        }
+        replay_close(app);
+        log_close(app);
+        if (app->shell->wake > 0) close(app->shell->wake);
+    }
     if (app->shot) session_snapshot_free(app->shot);
     memory_free(app->shot, sizeof *app->shot);
     memory_free(app->shell, sizeof *app->shell);
     theme_close(&app->theme);
 }
 
+/* Without a terminal there is none to give back. */
+static void nothing(void) {
+}
+
 status tui_workbench(session **run, const tui_options *options, report *r) {
-    tui_app app = {.options = *options};
-    bool unicode;
+    tui_app app = {.options = *options, .headless = options->headless};
+    bool unicode = true;
     report_clear(r);
-    status failed = terminal_open(&unicode, r), outcome = STATUS_OK;
+    status failed = app.headless ? signals_install(nothing, r) : terminal_open(&unicode, r), outcome = STATUS_OK;
     if (failed != STATUS_OK) return failed;
     failed = app_open(&app, *run, unicode, r);
     if (failed == STATUS_OK) loop(&app);
-    terminal_close();
+    if (app.headless) signals_remove();
+    else terminal_close();
     report ended;
     report_clear(&ended);
     app_close(&app, &outcome, &ended);
-    *run = app.run ? app.run : *run;
-    capture_replay();
-    capture_forget();
+    if (failed == STATUS_OK) *run = app.run;
+    if (!app.headless) {
+        capture_replay();
+        capture_forget();
+    }
     if (failed != STATUS_OK) return failed;
     *r = ended;
     return outcome;

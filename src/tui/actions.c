@@ -1,6 +1,5 @@
 #include "tui/actions.h"
 
-#include "base/memory.h"
 #include "base/names.h"
 #include "script/library.h"
 #include "tui/shell.h"
@@ -184,35 +183,6 @@ static status start_run(tui_app *app, const char *argument, report *r) {
     return s;
 }
 
-static status turn_knob(tui_app *app, const char *argument, report *r) {
-    char path[ACTION_ARGUMENT];
-    const char *equals = strchr(argument, '=');
-    if (!equals || equals == argument) return report_input(r, NULL, 0, "turn", "PATH=VALUE", argument, NULL);
-    snprintf(path, sizeof path, "%.*s", (int)(equals - argument), argument);
-    status s = app_turn(app, path, equals + 1, r);
-    if (s == STATUS_OK) app_notice(app, "%s = %s from the next frame on.", path, equals + 1);
-    return s;
-}
-
-/* The paths of knobs that can be turned, then the present value of the one that is named. */
-static bool complete_turn(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
-    size_t bytes = KNOB_LIMIT * sizeof(knob), length = strlen(text);
-    knob *list = app->run ? memory_allocate(bytes) : NULL;
-    int count = list ? session_knobs(app->run, list, KNOB_LIMIT) : 0;
-    bool found = false;
-    for (int i = 0; i < count && i < KNOB_LIMIT && !found; i++) {
-        size_t path = strlen(list[i].path);
-        bool whole = strncmp(list[i].path, text, path) == 0 && text[path] == '=' && !text[path + 1];
-        if (!list[i].live || (!whole && strncmp(list[i].path, text, length) != 0) || index-- > 0) continue;
-        char value[KNOB_TEXT];
-        knob_print(&list[i], list[i].value, value);
-        snprintf(out, ACTION_ARGUMENT, "%s=%s", list[i].path, whole ? value : "");
-        found = true;
-    }
-    if (list) memory_free(list, bytes);
-    return found;
-}
-
 static bool complete_start(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
     (void)app;
     enum { MOST = 256 };
@@ -248,8 +218,6 @@ static const tui_action table[] = {
      .argument = ARGUMENT_MAY, .asks = "back", .unlogged = true},
     {.name = "start", .keys_shown = ":", .help = "start a run, in the words of sunder run", .handler = start_run, .argument = ARGUMENT_TEXT,
      .asks = "SCENE [--set KEY=VALUE] [--recipe NAME]", .complete = complete_start},
-    {.name = "turn", .keys_shown = ":", .help = "turn a knob of the run from the next frame on", .handler = turn_knob, .argument = ARGUMENT_TEXT,
-     .asks = "PATH=VALUE", .complete = complete_turn},
     {.name = "quit", .keys = {'q'}, .keys_shown = "q", .hint = "quit", .help = "stop after this frame (asks first), or leave", .handler = quit,
      .argument = ARGUMENT_MAY, .asks = "stop"},
     {.name = "leave", .keys = {'Q'}, .keys_shown = "Q", .help = "leave at once; whole frames are kept", .handler = leave},

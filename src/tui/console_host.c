@@ -223,7 +223,7 @@ static status do_on_run(tui_app *app, const char *f, const char *first, const ch
     if (strcmp(f, "step") == 0) return app_do(app, "run.step", "", r);
     if (strcmp(f, "turn") == 0) {
         snprintf(text, sizeof text, "%s=%s", first, second);
-        return app_do(app, "turn", text, r);
+        return app_do(app, "run.turn", text, r);
     }
     if (strcmp(f, "run_to") == 0) {
         char *end;

@@ -113,6 +113,8 @@ script *script_of(lua_State *L);
 /* ---- script.c ---- */
 /* A script that has loaded nothing yet: its Lua state is bare. NULL: out of memory. */
 script *script_create(const script_options *options, script_reports *reports);
+/* Calls a function with one pointer under the script's limits; what goes wrong is recorded. */
+void script_run_protected(script *s, lua_CFunction call, void *request);
 
 /* ---- errors.c ---- */
 void throw_report(lua_State *L, const report *r) __attribute__((noreturn));

@@ -34,7 +34,7 @@ static int load_protected(lua_State *L) {
 }
 
 /* Calls a function with one pointer; what goes wrong is recorded. */
-static void run_protected(script *s, lua_CFunction call, void *request) {
+void script_run_protected(script *s, lua_CFunction call, void *request) {
     lua_State *L = s->L;
     guard_begin(&s->guard);
     lua_pushcfunction(L, error_handler);
@@ -132,7 +132,7 @@ status script_load(const char *path, const script_options *options, script **out
         return report_set(&reports->items[0], STATUS_SYSTEM, "out of memory while %s was loaded", path);
     }
     load_request q = {path, options};
-    run_protected(s, load_protected, &q);
+    script_run_protected(s, load_protected, &q);
     finish_loading(s);
     s->reports = NULL;
     if (s->problem_count == 0) {
@@ -169,7 +169,7 @@ status sweep_load(const char *path, sweep *out, script_reports *reports) {
         return report_set(&reports->items[0], STATUS_SYSTEM, "out of memory while %s was loaded", path);
     }
     sweep_request q = {path, out};
-    run_protected(s, load_sweep_protected, &q);
+    script_run_protected(s, load_sweep_protected, &q);
     s->reports = NULL;
     bool fine = s->problem_count == 0;
     if (!fine) sort_reports(s, reports);

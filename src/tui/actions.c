@@ -122,6 +122,13 @@ static status change_theme(tui_app *app, const char *argument, report *r) {
     return STATUS_OK;
 }
 
+static status use_mouse(tui_app *app, const char *argument, report *r) {
+    (void)r;
+    app->mouse = argument[0] ? strcmp(argument, "off") != 0 : !app->mouse;
+    app_notice(app, app->mouse ? "The mouse is the workbench's." : "The mouse is the terminal's.");
+    return STATUS_OK;
+}
+
 static status redraw(tui_app *app, const char *argument, report *r) {
     (void)argument, (void)r;
     app->redraw = true;
@@ -223,6 +230,8 @@ static const tui_action table[] = {
     {.name = "leave", .keys = {'Q'}, .keys_shown = "Q", .help = "leave at once; whole frames are kept", .handler = leave},
     {.name = "theme", .keys = {'t'}, .keys_shown = "t", .hint = "theme", .help = "dark, light or colour-blind", .handler = change_theme,
      .argument = ARGUMENT_MAY, .asks = "THEME", .complete = complete_theme},
+    {.name = "mouse", .keys = {'M'}, .keys_shown = "M", .help = "the mouse for the workbench, or for the terminal", .handler = use_mouse,
+     .argument = ARGUMENT_MAY, .asks = "on|off", .unlogged = true},
     {.name = "log", .keys = {'g'}, .keys_shown = "g", .help = "what libraries have printed", .handler = show_log,
      .unlogged = true},
     {.name = "commands", .keys = {'G'}, .keys_shown = "G", .help = "what has been done: the command log", .handler = show_commands,
@@ -271,6 +280,22 @@ bool actions_find(const tui_app *app, const char *name, action_place *out) {
             return true;
     }
     return false;
+}
+
+const char *actions_nearest(const char *name, char out[SHELL_NAME]) {
+    enum { MOST = 256 };
+    char names[MOST][SHELL_NAME];
+    const char *list[MOST];
+    action_place place;
+    int count = 0;
+    for (; count < MOST && actions_at(count, &place); count++) {
+        action_name(&place, names[count], SHELL_NAME);
+        list[count] = names[count];
+    }
+    const char *nearest = name_nearest(name, list, count);
+    if (!nearest) return NULL;
+    snprintf(out, SHELL_NAME, "%s", nearest);
+    return out;
 }
 
 /* ---- doing ------------------------------------------------------------------------------------------------------- */
@@ -341,16 +366,8 @@ static status do_place(tui_app *app, const action_place *place, const char *argu
 status app_do(tui_app *app, const char *name, const char *argument, report *r) {
     action_place place;
     if (actions_find(app, name, &place)) return do_place(app, &place, argument, r);
-    const char *nearest = NULL;
-    char names[256][SHELL_NAME];
-    const char *list[256];
-    int count = 0;
-    for (; count < 256 && actions_at(count, &place); count++) {
-        action_name(&place, names[count], SHELL_NAME);
-        list[count] = names[count];
-    }
-    nearest = name_nearest(name, list, count);
-    status s = report_input(r, NULL, 0, name, "an action (? lists them)", "none of that name", nearest);
+    char near[SHELL_NAME];
+    status s = report_input(r, NULL, 0, name, "an action (? lists them)", "none of that name", actions_nearest(name, near));
     app_fail(app, r);
     return s;
 }
@@ -412,6 +429,15 @@ static bool screen_key(tui_app *app, int key) {
     return true;
 }
 
+/* A key of the user's own. */
+static void press_bound(tui_app *app, const tui_binding *own) {
+    action_place place;
+    report unused;
+    if (!own->name[0] || !actions_find(app, own->name, &place)) return;
+    if (place.action->argument >= ARGUMENT_TEXT && !place.action->preset && !own->argument[0]) app_prompt(app, own->name, "");
+    else (void)app_do(app, own->name, own->argument, &unused);
+}
+
 void actions_press(tui_app *app, int key) {
     app->dirty = true;
     report r;
@@ -426,6 +452,11 @@ void actions_press(tui_app *app, int key) {
     }
     if (app->page != PAGE_NONE && scroll_page(app, key)) return;
     if (app->page == PAGE_NONE && app->screen->key && app->screen->key(app, screen_state(app, app->screen, &r), key)) return;
+    const tui_binding *own = binding_find(app, key);
+    if (own) {
+        press_bound(app, own);
+        return;
+    }
     action_place place;
     if (screen_key(app, key) || !find_key(app, key, &place)) return;
     if (place.action->argument >= ARGUMENT_TEXT && !place.action->preset) {

@@ -17,6 +17,8 @@ typedef struct action_place {
 bool actions_at(int index, action_place *out);
 /* "run.pause", "quit", or the bare name of an action of the screen in view. */
 bool actions_find(const tui_app *app, const char *name, action_place *out);
+/* The name nearest to one that is none; NULL when none is near. out[64] holds it. */
+const char *actions_nearest(const char *name, char out[64]);
 /* "run.pause" or "quit". */
 void action_name(const action_place *place, char *out, size_t size);
 

@@ -39,6 +39,10 @@ struct tui_app {
     double notice_until;     /* s, monotonic clock */
     int64_t printed;         /* bytes of captured output seen so far */
 
+    bool mouse;     /* wanted */
+    bool mouse_on;  /* asked of the terminal */
+    tui_area body;  /* what the screen in view was given last */
+
     bool dirty;  /* something on the screen changed */
     bool redraw; /* all of it must be sent to the terminal anew */
 

@@ -23,6 +23,7 @@ void workbench_draw(tui_app *app) {
         bool typing = app->shell->prompt.open;
         int message = app->page == PAGE_NONE && !typing ? message_rows(app, all.width) : 1;
         tui_area body = {1, 0, all.height - 2 - message, all.width}, last = {all.height - 1, 0, 1, all.width};
+        app->body = body;
         widget_title(app, (tui_area){0, 0, 1, all.width});
         if (app->page != PAGE_NONE) {
             widget_page(app, body);

@@ -3,12 +3,14 @@
 #ifndef SUNDER_TUI_SHELL_H
 #define SUNDER_TUI_SHELL_H
 
+#include "script/user_config.h"
 #include "tui/app.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
 
+enum { SHELL_BINDINGS = USER_BINDINGS };
 enum { PROMPT_HISTORY = 64, START_SETTINGS = 64, START_TURNS = 256, SHELL_NAME = 64 };
 
 /* ---- prompt.c ---------------------------------------------------------------------------------------------------- */
@@ -98,6 +100,21 @@ void replay_close(tui_app *app);
 /* Does what is due. */
 void replay_tick(tui_app *app);
 
+/* ---- bindings.c -------------------------------------------------------------------------------------------------- */
+
+typedef struct tui_binding {
+    int key;
+    char name[SHELL_NAME], argument[USER_TEXT]; /* name "": the key does nothing */
+} tui_binding;
+
+/* The code of a key's name; 0: not one. */
+int binding_key(const char *name);
+/* Reads config.lua and takes over what must be known before the screen opens; what is wrong is left in r. */
+void config_read(tui_app *app, user_config *c, report *r);
+/* Takes over the rest, and shows what was wrong. */
+void config_apply(tui_app *app, const user_config *c, report *r);
+const tui_binding *binding_find(const tui_app *app, int key);
+
 /* ---- the whole --------------------------------------------------------------------------------------------------- */
 
 typedef struct tui_shell {
@@ -107,6 +124,8 @@ typedef struct tui_shell {
     run_start start;
     tui_replay replay;
     int runs_started;
+    tui_binding bindings[SHELL_BINDINGS];
+    int binding_count;
 
     bool asking; /* a question is on the message line */
     char question[192], yes_action[SHELL_NAME], yes_argument[ACTION_ARGUMENT];

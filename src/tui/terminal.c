@@ -84,6 +84,11 @@ static void prepare_restore(void) {
     append_capability("op");
     append_capability("cnorm");
     append_capability("rmkx");
+    const char *mouse = tigetstr("kmous"), off[] = "\033[?1000l\033[?1006l";
+    if (mouse && mouse != (char *)-1 && state.restore_length + sizeof off < RESTORE_BYTES) {
+        memcpy(state.restore + state.restore_length, off, sizeof off - 1);
+        state.restore_length += sizeof off - 1;
+    }
     append_capability("rmcup");
     if (!tigetstr("rmcup")) state.restore[state.restore_length++] = '\n';
     state.restore[state.restore_length++] = '\r';

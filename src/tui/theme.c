@@ -1,6 +1,7 @@
 #include "tui/theme.h"
 
 #include "base/memory.h"
+#include "base/names.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -130,7 +131,11 @@ tui_ink theme_value(tui_theme *theme, float value) {
 static tui_ink style_ink(tui_theme *theme, const style_row *row) {
     if (theme->colours == 0) return (tui_ink){row->mono, 0};
     bool many = theme->colours == 256;
-    tui_ink ink = theme_pair(theme, many ? row->fore256 : row->fore8, many ? row->back256 : row->back8);
+    int fore = many ? row->fore256 : row->fore8;
+    int own = theme->overrides[row - themes[theme->kind].styles] - 1;
+    if (own >= 0x1000000 && many) fore = view_rgb_to_256((view_rgb){(uint8_t)(own >> 16), (uint8_t)(own >> 8), (uint8_t)own});
+    else if (own >= 0 && own < theme->colours) fore = own;
+    tui_ink ink = theme_pair(theme, fore, many ? row->back256 : row->back8);
     ink.attributes = row->attributes;
     /* With few colours a bar is told apart by being reversed, and a value by being bold. */
     if (!many && row->back256 >= 0) ink.attributes |= A_REVERSE;
@@ -145,6 +150,19 @@ void theme_choose(tui_theme *theme, tui_theme_kind kind) {
     theme->pair_count = 0;
     memset(theme->pairs, 0, PAIRS * sizeof(short));
     for (int i = 0; i < STYLE_COUNT; i++) theme->styles[i] = style_ink(theme, &themes[kind].styles[i]);
+}
+
+bool theme_override(tui_theme *theme, const char *style, int colour, const char **nearest) {
+    static const char *const names[STYLE_COUNT] = {"text",     "dim",     "strong", "head", "bar", "bar-strong", "bar-good",
+                                                   "bar-warn", "bar-bad", "good",   "warn", "bad", "plot"};
+    for (int i = 0; i < STYLE_COUNT; i++) {
+        if (strcmp(names[i], style) != 0) continue;
+        theme->overrides[i] = colour + 1;
+        theme_choose(theme, theme->kind);
+        return true;
+    }
+    *nearest = name_nearest(style, names, STYLE_COUNT);
+    return false;
 }
 
 status theme_open(tui_theme *theme, tui_theme_kind kind, int wanted, bool ascii, report *r) {

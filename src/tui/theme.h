@@ -37,6 +37,7 @@ typedef struct tui_theme {
     short pair_count; /* handed out so far; pair 0 is the terminal's own */
     short pair_limit;
     short *pairs; /* [257][257] pair of (foreground + 1, background + 1), 0 when none yet */
+    int overrides[STYLE_COUNT]; /* the user's own colours + 1: 0–255, or 0x1000000 + rgb; 0: the theme's */
     tui_ink styles[STYLE_COUNT];
 } tui_theme;
 
@@ -49,6 +50,9 @@ void theme_close(tui_theme *theme);
 void theme_choose(tui_theme *theme, tui_theme_kind kind);
 
 const char *theme_name(tui_theme_kind kind);
+
+/* Gives a style ("dim", "bar-good") a colour of the user's own: 0–255, or 0x1000000 + rgb. False, with the nearest name (or NULL): no such style. */
+bool theme_override(tui_theme *theme, const char *style, int colour, const char **nearest);
 
 /* The ink for a colour pair in terminal colours; −1 is the terminal's default. */
 tui_ink theme_pair(tui_theme *theme, int foreground, int background);

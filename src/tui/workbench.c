@@ -66,6 +66,26 @@ static void take_signals(tui_app *app) {
     }
 }
 
+/* Clicks and the wheel, within what the screen was given. */
+static void take_mouse(tui_app *app) {
+    MEVENT event;
+    report unused;
+    if (getmouse(&event) != OK || !app->screen->mouse || app->page != PAGE_NONE || app->shell->prompt.open) return;
+    int row = event.y - app->body.y, column = event.x - app->body.x, wheel = 0;
+    if (row < 0 || row >= app->body.height || column < 0 || column >= app->body.width) return;
+    if (event.bstate & BUTTON4_PRESSED) wheel = -1;
+    else if (event.bstate & BUTTON5_PRESSED) wheel = 1;
+    else if (!(event.bstate & (BUTTON1_PRESSED | BUTTON1_CLICKED))) return;
+    app->screen->mouse(app, screen_state(app, app->screen, &unused), app->body, row, column, wheel);
+}
+
+static void want_mouse(tui_app *app) {
+    if (app->mouse == app->mouse_on) return;
+    mousemask(app->mouse ? BUTTON1_PRESSED | BUTTON1_CLICKED | BUTTON4_PRESSED | BUTTON5_PRESSED : 0, NULL);
+    mouseinterval(0);
+    app->mouse_on = app->mouse;
+}
+
 static void take_keys(tui_app *app, pace *p) {
     if (app->headless) return;
     if (p->hung_up) {
@@ -77,7 +97,8 @@ static void take_keys(tui_app *app, pace *p) {
         if (key == ERR) return;
         app->dirty = true;
         if (key == KEY_RESIZE) continue;
-        actions_press(app, key);
+        if (key == KEY_MOUSE) take_mouse(app);
+        else actions_press(app, key);
         p->next_draw = fmin(p->next_draw, app_clock() + key_delay);
     }
 }
@@ -132,6 +153,7 @@ static void draw_if_due(tui_app *app, pace *p) {
     app->dirty = false;
     if (app->redraw) clearok(curscr, TRUE);
     app->redraw = false;
+    want_mouse(app);
     workbench_draw(app);
     double cost = app_clock() - start;
     p->next_draw = start + fmax(frame_time, cost / load_share);
@@ -162,6 +184,9 @@ static void log_start(tui_app *app, const session *run) {
 }
 
 static status app_open(tui_app *app, session *run, bool unicode, report *r) {
+    static user_config config; /* large */
+    report config_trouble;
+    config_read(app, &config, &config_trouble);
     int colours = app->headless ? 0 : app->options.colours;
     status s = theme_open(&app->theme, app->options.theme, colours, app->options.ascii || !unicode, r);
     if (s != STATUS_OK) return s;
@@ -177,6 +202,7 @@ static status app_open(tui_app *app, session *run, bool unicode, report *r) {
     if (run) log_start(app, run);
     app_switch_run(app, run);
     app_show(app, run ? &screen_run : &screen_scenes);
+    config_apply(app, &config, &config_trouble);
     if (app->options.replay) return replay_open(app, app->options.replay, r);
     return STATUS_OK;
 }

@@ -388,3 +388,7 @@ void session_request(const session *s, session_options *out) {
     (void)s;
     *out = (session_options){.scene_path = "tube_pull.lua", .simd = "auto", .precision = 32, .frames = -1, .checkpoint_every = 1, .keep = 2};
 }
+
+session_options session_options_default(void) {
+    return (session_options){.simd = "auto", .precision = 32, .frames = -1, .checkpoint_every = 1, .keep = 2};
+}

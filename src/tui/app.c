@@ -133,12 +133,15 @@ void app_switch_run(tui_app *app, session *run) {
     app->run = run;
     app->stopping = app->abandoned = false;
     app->ended = run == NULL;
+    /* Nothing of the run before: the new one's first publication may be yet to come. */
     app->shot->version = 0;
-    app->shot->run_id[0] = '\0';
-    if (run) {
-        session_poll(run, app->shot);
-        log_attach(app);
-    }
+    app->shot->state = SESSION_STARTING;
+    app->shot->frame = app->shot->step = 0;
+    app->shot->history_count = app->shot->event_count = 0;
+    app->shot->point_count = 0;
+    app->shot->run_id[0] = app->shot->output[0] = app->shot->message[0] = app->shot->parent[0] = '\0';
+    log_detach(app);
+    if (run) session_poll(run, app->shot);
     for (size_t i = 0; i < sizeof screens / sizeof *screens; i++)
         if (app->opened[i] && screens[i]->follow) screens[i]->follow(app, app->states[i], true);
     app->dirty = true;

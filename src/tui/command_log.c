@@ -82,11 +82,17 @@ static FILE *write_all(const command_log *log, const char *path, report *r) {
     return NULL;
 }
 
-void log_attach(tui_app *app) {
+void log_detach(tui_app *app) {
     command_log *log = &app->shell->log;
     if (log->file) fclose(log->file);
     log->file = NULL;
-    if (!app->shot->output[0]) return;
+    log->attached = false;
+}
+
+void log_attach(tui_app *app) {
+    command_log *log = &app->shell->log;
+    if (log->attached || !app->shot->output[0]) return;
+    log->attached = true;
     char path[TUI_PATH];
     report r;
     if (snprintf(path, sizeof path, "%s/commands.log", app->shot->output) >= (int)sizeof path) return;

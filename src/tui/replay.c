@@ -117,6 +117,13 @@ static status do_line(tui_app *app, tui_replay *p, report *r) {
     return refuse(p, "an action that can be done here", trouble, r);
 }
 
+void replay_fail(tui_app *app, const report *r) {
+    tui_replay *p = &app->shell->replay;
+    if (!app->options.replay || p->outcome.code != STATUS_OK) return;
+    end(app, p, r);
+    p->outcome = *r;
+}
+
 void replay_tick(tui_app *app) {
     tui_replay *p = &app->shell->replay;
     report r;

@@ -54,8 +54,7 @@ static void take_parts(preview_facts *f, const scene *s) {
     for (int i = 0; i < s->sheet_count; i++)
         add_part(f, "sheet: ", s->sheets[i].region.shape, s->materials[s->sheets[i].material].name);
     if (f->part_count < PREVIEW_PARTS && s->grip_count + s->collider_count > 0)
-        snprintf(f->parts[f->part_count++], sizeof f->parts[0], "%d grip%s, %d collider%s", s->grip_count, s->grip_count == 1 ? "" : "s",
-                 s->collider_count, s->collider_count == 1 ? "" : "s");
+        snprintf(f->parts[f->part_count++], sizeof f->parts[0], "grips: %d, colliders: %d", s->grip_count, s->collider_count);
 }
 
 static void take_parameter(preview_parameter *to, const script_declaration *d) {

@@ -38,7 +38,8 @@ void widget_candidates(tui_app *app, tui_area area);
 typedef struct command_log {
     char *text; /* all of it, NUL-terminated */
     size_t used, capacity;
-    FILE *file; /* the run's, or NULL */
+    FILE *file;    /* the run's, or NULL */
+    bool attached; /* the run's folder has been tried */
     char pending[4 * ACTION_ARGUMENT]; /* lines for when the run has ended and its last frame is known */
 } command_log;
 
@@ -53,7 +54,8 @@ void log_defer(tui_app *app);
 void log_pend(tui_app *app, const char *name, const char *argument);
 /* The run has ended: writes what was pending. */
 void log_settle(tui_app *app);
-/* A run has come into view: its folder gets the whole log, and all that follows. */
+/* Another run comes into view: once its folder is known it gets the whole log, and all that follows. */
+void log_detach(tui_app *app);
 void log_attach(tui_app *app);
 status log_save(tui_app *app, const char *path, report *r);
 
@@ -97,6 +99,8 @@ typedef struct tui_replay {
 /* Reads a log, to be done again from now on. Errors: no such file. */
 status replay_open(tui_app *app, const char *path, report *r);
 void replay_close(tui_app *app);
+/* A run that the log has asked for cannot be started. */
+void replay_fail(tui_app *app, const report *r);
 /* Does what is due. */
 void replay_tick(tui_app *app);
 

@@ -97,10 +97,12 @@ void start_tick(tui_app *app) {
     app->dirty = true;
     if (start->outcome != STATUS_OK) {
         app_fail(app, &start->reports.items[0]);
+        replay_fail(app, &start->reports.items[0]);
         return;
     }
     app->notice[0] = '\0';
     app_switch_run(app, start->made);
+    if (app->headless && app->shell->replay.outcome.code != STATUS_OK) app_end_run(app); /* asked for before the replay failed */
 }
 
 void start_close(tui_app *app) {

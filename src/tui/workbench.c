@@ -117,6 +117,7 @@ static void take_state(tui_app *app) {
         /* Asked before polling: a session that has ended has published its last state. */
         bool ended = session_wait(app->run, 0);
         if (session_poll(app->run, app->shot)) {
+            log_attach(app);
             tell_screens(app);
             app->dirty = true;
         }
@@ -220,6 +221,7 @@ static void app_close(tui_app *app, status *outcome, report *r) {
     if (app->run) {
         session_wait(app->run, -1);
         session_poll(app->run, app->shot);
+        log_attach(app);
         app->ended = true;
         *outcome = session_outcome(app->run, r);
     }

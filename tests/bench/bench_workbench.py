@@ -1,0 +1,126 @@
+"""What the open workbench costs the simulation, and how soon it answers a key.
+
+Runs a scene without a screen (`sunder run --quiet`) and with the workbench open on it in a pseudo-terminal, in turn, and compares steps per second of the
+steps' own wall time and of the whole run; while the workbench is open, keys are pressed and their answers timed (help opens and closes).
+
+Usage: bench_workbench.py SUNDER SCENE [--rounds N] [--frames N] [--set KEY=VALUE]… [--width N] [--height N] [--json]
+"""
+import argparse
+import fcntl
+import json
+import os
+import pty
+import select
+import statistics
+import struct
+import subprocess
+import sys
+import tempfile
+import termios
+import time
+
+
+def speed(folder):
+    """Steps per second of wall time, and of the time in steps alone, of the run in a folder."""
+    with open(os.path.join(folder, "result.json"), encoding="utf-8") as file:
+        result = json.load(file)
+    return result["steps"] / result["wall_s"], result["steps"] / result["step_wall_s"]
+
+
+class Terminal:
+    """The program on a bare pseudo-terminal."""
+
+    def __init__(self, arguments, width, height, environment):
+        self.pid, self.descriptor = pty.fork()
+        if self.pid == 0:
+            fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack("HHHH", height, width, 0, 0))
+            os.execve(arguments[0], arguments, environment)
+        self.open = True
+
+    def read(self, seconds):
+        """What it has drawn within so long; None when it is gone."""
+        ready, _, _ = select.select([self.descriptor], [], [], seconds)
+        if not ready:
+            return b""
+        try:
+            return os.read(self.descriptor, 65536) or None
+        except OSError:
+            return None
+
+    def answer(self, key, sign):
+        """Seconds from a key to the first drawing that has the sign; None when the program is gone."""
+        seen = b""
+        start = time.monotonic()
+        os.write(self.descriptor, key)
+        while sign not in seen:
+            part = self.read(10)
+            if part is None or (part == b"" and time.monotonic() - start > 10):
+                return None
+            seen = (seen + part)[-65536:]
+        return time.monotonic() - start
+
+
+def quiet(o, base, folder, environment):
+    subprocess.run([*base, "--out", folder, "--quiet"], env=environment, check=True)
+    return speed(folder)
+
+
+def workbench(o, base, folder, environment):
+    """The same run with the workbench open on it; also the answers' delays."""
+    terminal = Terminal([*base, "--out", folder, "--tui"], o.width, o.height, environment)
+    delays = []
+    end = time.monotonic() + 1
+    while time.monotonic() < end:
+        terminal.read(0.1)
+    while not os.path.exists(os.path.join(folder, "result.json")):
+        delay = terminal.answer(b"?", b"this page")
+        if delay is None:
+            break
+        delays.append(delay)
+        for key in (b"?", b""):
+            os.write(terminal.descriptor, key)
+            end = time.monotonic() + 0.7
+            while time.monotonic() < end:
+                terminal.read(0.05)
+    os.write(terminal.descriptor, b"q")
+    while terminal.read(0.5):
+        pass
+    os.waitpid(terminal.pid, 0)
+    return speed(folder), delays
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("sunder")
+    parser.add_argument("scene")
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--frames", type=int, default=8)
+    parser.add_argument("--set", action="append", default=[])
+    parser.add_argument("--width", type=int, default=200)
+    parser.add_argument("--height", type=int, default=60)
+    parser.add_argument("--json", action="store_true")
+    o = parser.parse_args()
+    rows, delays = {"quiet": [], "workbench": []}, []
+    with tempfile.TemporaryDirectory(prefix="sunder-bench-") as base_folder:
+        environment = dict(os.environ, TERM="xterm-256color", LC_ALL="C.UTF-8", XDG_DATA_HOME=base_folder, XDG_CONFIG_HOME=base_folder)
+        settings = [word for setting in o.set for word in ("--set", setting)]
+        base = [os.path.abspath(o.sunder), "run", o.scene, *settings, "--frames", str(o.frames), "--db", os.path.join(base_folder, "ledger.db")]
+        for i in range(o.rounds):
+            rows["quiet"].append(quiet(o, base, os.path.join(base_folder, f"quiet{i}"), environment))
+            figures, more = workbench(o, base, os.path.join(base_folder, f"workbench{i}"), environment)
+            rows["workbench"].append(figures)
+            delays += more
+    share = [statistics.median(row[k] for row in rows["workbench"]) / statistics.median(row[k] for row in rows["quiet"]) for k in (0, 1)]
+    result = {"quiet_steps_per_s": [row[0] for row in rows["quiet"]], "workbench_steps_per_s": [row[0] for row in rows["workbench"]],
+              "share_of_wall": share[0], "share_of_steps": share[1], "keys": len(delays),
+              "key_median_ms": 1e3 * statistics.median(delays) if delays else None, "key_worst_ms": 1e3 * max(delays) if delays else None}
+    if o.json:
+        print(json.dumps(result))
+    else:
+        for name, value in result.items():
+            print(f"{name:24} {value}")
+    return 0 if share[0] >= 0.95 and (not delays or statistics.median(delays) < 0.05) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,192 @@
+"""Tuning sessions in the workbench, done again from their command logs without and with a terminal: every run's last state has the same bits.
+
+Usage: test_replay.py SUNDER SCENES [name ...]   Exit codes: 0 passed, 1 failed, 77 skipped (no tmux).
+"""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import traceback
+
+import bench
+from bench import Bench, check
+from test_tui import Failure
+
+TESTS = {}
+
+
+def test(function):
+    TESTS[function.__name__] = function
+    return function
+
+
+def hashes(s):
+    """The last state of each run of a bench's ledger, in order."""
+    found = []
+    for (folder,) in s.sql("SELECT output FROM runs ORDER BY run"):
+        with open(os.path.join(folder, "result.json"), encoding="utf-8") as file:
+            found.append(json.load(file)["state_hash"])
+    return found
+
+
+def run_to(s, frame):
+    s.do(f"run.run-to {frame}")
+    s.wait(rf"frame +{frame}/")
+    s.wait(r"paused *$")
+
+
+def turn(s, path, value):
+    s.do(f"run.turn {path}={value}")
+    s.wait(rf"{path} = {value}")
+
+
+def replays_to_the_same_bits(s, log):
+    """The log of the session in `s`, done again without a terminal and with one."""
+    wanted = hashes(s)
+    check(len(wanted) >= 1 and all(wanted), f"no hashes: {wanted}")
+    again = os.path.join(s.folder, "again")
+    done = subprocess.run([bench.SUNDER, "--replay", log, "--db", f"{s.folder}/again.db", "--out", again], stdin=subprocess.DEVNULL,
+                          capture_output=True, text=True, timeout=200, cwd=s.folder, check=False)
+    got = []
+    for i in range(len(wanted)):
+        with open(os.path.join(again if i == 0 else f"{again}.{i + 1}", "result.json"), encoding="utf-8") as file:
+            got.append(json.load(file)["state_hash"])
+    check(got == wanted, f"without a terminal: {got}, not {wanted}\n{done.stderr}")
+    with open(os.path.join(f"{again}.{len(wanted)}" if len(wanted) > 1 else again, "commands.log"), encoding="utf-8") as file:
+        second = file.read()
+    with open(log, encoding="utf-8") as file:
+        first = [line for line in file.read().splitlines() if " run.turn " in line]
+    check([line for line in second.splitlines() if " run.turn " in line] == first, "the replay's own log has other turns")
+    with Bench(replay=log) as other:
+        other.wait(r"^END", patience=200)
+        check(hashes(other) == wanted, f"with a terminal: {hashes(other)}, not {wanted}")
+
+
+@test
+def turns_rewind_branch_and_recipe():
+    with Bench("solid/tube_pull.lua --set particles=1500 --set duration=1") as s:
+        s.paused()
+        turn(s, "eta", "0.3")
+        run_to(s, 4)
+        turn(s, "break_stretch", "0.2")
+        turn(s, "alpha", "-0.5")
+        s.keys("Space")
+        s.wait(r"frame +7/")
+        turn(s, "residual", "0.05")  # while it goes on
+        s.wait(r"paused|running")
+        s.do("run.pause on")
+        s.wait(r"paused *$")
+        s.do("run.branch 4")
+        s.wait(r"frame +4/")
+        s.wait(r"paused *$")
+        turn(s, "sigma_c", "40")
+        s.do("run.save-recipe tuned.lua")
+        s.wait(r"is in tuned\.lua")
+        s.keys("Space")
+        s.wait(r"done *$", patience=60)
+        s.keys("q")
+        s.wait(r"^END")
+        log = os.path.join(s.folder, "session.log")
+        shutil.copy(os.path.join(s.sql("SELECT output FROM runs ORDER BY run DESC")[0][0], "commands.log"), log)
+        with open(os.path.join(s.folder, "tuned.lua"), encoding="utf-8") as file:
+            recipe = file.read()
+        os.remove(os.path.join(s.folder, "tuned.lua"))
+        replays_to_the_same_bits(s, log)
+        with open(os.path.join(s.folder, "tuned.lua"), encoding="utf-8") as file:
+            check(file.read() == recipe, "the replay saved another recipe")
+
+
+@test
+def a_stop_is_replayed_at_its_frame():
+    with Bench("solid/tube_pull.lua --set particles=1500 --set duration=4 --precision f64") as s:
+        s.wait(r"frame +[3-9]/")
+        s.do("run.turn eta=0.2")
+        s.wait(r"eta = 0.2")
+        s.keys("C-c")
+        s.wait(r"^END")
+        log = os.path.join(s.sql("SELECT output FROM runs")[0][0], "commands.log")
+        kept = os.path.join(s.folder, "kept.log")
+        shutil.copy(log, kept)
+        with open(kept, encoding="utf-8") as file:
+            check("quit stop" in file.read(), "the stop is not in the log")
+        replays_to_the_same_bits(s, kept)
+
+
+@test
+def the_log_of_a_killed_session_goes_on_to_the_end():
+    with Bench("sheet/seaweed.lua --set particles=900 --frames 12") as s:
+        s.wait(r"frame +[2-9]/")
+        log = os.path.join(s.folder, "part.log")
+        with open(log, "w", encoding="utf-8") as file:
+            file.write("".join(line for line in s.commands().splitlines(True) if "start" in line or line.startswith("#")))
+        s.wait(r"done *$", patience=60)
+        s.keys("q")
+        s.wait(r"^END")
+        wanted = hashes(s)
+        again = os.path.join(s.folder, "again")
+        subprocess.run([bench.SUNDER, "--replay", log, "--db", f"{s.folder}/again.db", "--out", again], stdin=subprocess.DEVNULL, timeout=100,
+                       capture_output=True, cwd=s.folder, check=True)
+        with open(os.path.join(again, "result.json"), encoding="utf-8") as file:
+            check(json.load(file)["state_hash"] == wanted[0], "the bits differ")
+
+
+@test
+def wrong_logs_are_refused_with_their_line():
+    with Bench("solid/tube_pull.lua --set particles=900 --frames 2") as s:
+        s.wait(r"done *$")
+        for text, line, word in (("- start tube_pull --set particles=900 --frames 3\n1 run.turn eta=-1\n", 2, "eta"), ("# a remark\nnonsense\n", 2, "FRAME ACTION"),
+                                 ("- run.nonsens\n", 1, "run.nonsens"), ("- start nosuchscene\n", 1, "nosuchscene")):
+            path = os.path.join(s.folder, "wrong.log")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(text)
+            done = subprocess.run([bench.SUNDER, "--replay", path, "--db", f"{s.folder}/wrong.db"], stdin=subprocess.DEVNULL, capture_output=True,
+                                  text=True, timeout=60, cwd=s.folder, env=dict(os.environ, XDG_DATA_HOME=s.folder), check=False)
+            check(done.returncode == 2, f"exit code {done.returncode} for {text!r}: {done.stderr}")
+            check(word in done.stderr and (f"wrong.log:{line}" in done.stderr or word == "nosuchscene"), f"for {text!r}: {done.stderr}")
+
+
+@test
+def config_binds_keys_and_wrong_ones_are_told():
+    config = 'return {\n  theme = "light",\n  keys = { ["ctrl-n"] = "run.turn eta=0.125", F9 = "screen console", g = false },\n  styles = { good = 200 },\n}\n'
+    with Bench("solid/tube_pull.lua --set particles=900", config=config) as s:
+        s.paused()
+        check("48;5;254" in s.text(True), "not the light theme")
+        s.keys("C-n")
+        s.wait(r"eta = 0\.125 from")
+        s.keys("g")
+        s.wait(r"printed by libraries", absent=True)
+        s.keys("F9")
+        s.wait(r"\[Console\]")
+    for wrong, message in (('return {\n  keys = {\n    F9 = "run.pausse" },\n}\n', r"config\.lua:3: .*run\.pause"),
+                           ('return {\n  theme = "lite" }\n', r"config\.lua:2: theme.*light"), ("return {\n  keys = { }\n", r"config\.lua:\d"),
+                           ('return {\n  keyz = {} }\n', r"config\.lua:\d.*keys"), ('return {\n\n  styles = { goood = 3 } }\n', r"config\.lua:3.*good")):
+        with Bench("solid/tube_pull.lua --set particles=900", config=wrong) as s:
+            s.wait(message)
+            s.paused()
+
+
+def main():
+    if len(sys.argv) < 3:
+        print(__doc__)
+        return 2
+    if not shutil.which("tmux"):
+        print("skipped: tmux is not installed")
+        return 77
+    bench.use(os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]))
+    failed = 0
+    for name in sys.argv[3:] or TESTS:
+        try:
+            TESTS[name]()
+            print(f"ok   {name}", flush=True)
+        except (Failure, AssertionError, OSError, subprocess.SubprocessError, KeyError, IndexError, ValueError) as error:
+            failed += 1
+            print(f"FAIL {name}: {error}", flush=True)
+            if not isinstance(error, Failure):
+                traceback.print_exc()
+    print(f"{len(sys.argv[3:] or TESTS)} tests, {failed} failed")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

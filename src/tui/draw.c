@@ -65,7 +65,7 @@ void draw_glyph(tui_area area, int row, int column, tui_ink ink, uint32_t glyph)
     if (row < 0 || row >= area.height || column < 0 || column >= area.width) return;
     wchar_t text[2] = {(wchar_t)glyph, 0};
     cchar_t cell;
-    if (setcchar(&cell, text, ink.attributes, ink.pair, NULL) == OK) mvadd_wch(area.y + row, area.x + column, &cell);
+    if (setcchar(&cell, text, ink.attributes, 0, &ink.pair) == OK) mvadd_wch(area.y + row, area.x + column, &cell);
 }
 
 int draw_ink(const tui_theme *theme, tui_area area, int row, int column, tui_ink ink, const char *text) {

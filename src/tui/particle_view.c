@@ -136,7 +136,7 @@ static status ensure_values(particle_view *view, const particle_points *points, 
 /* Braille dots have one colour a cell, so that light has to show in their density; blocks carry it in their colour. */
 static view_ink choose_ink(const particle_view *view, const tui_theme *theme) {
     if (theme->colours == 0) return VIEW_INK_VALUE;
-    return view->mode == VIEW_HALF && theme->colours == 256 ? VIEW_INK_SOLID : VIEW_INK_LIGHT;
+    return view->mode == VIEW_HALF && theme->colours >= 256 ? VIEW_INK_SOLID : VIEW_INK_LIGHT;
 }
 
 static status prepare(particle_view *view, const tui_theme *theme, tui_area area, const particle_points *points, report *r) {

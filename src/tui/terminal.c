@@ -34,6 +34,7 @@ static struct {
     struct termios modes;        /* as they were */
     char restore[RESTORE_BYTES]; /* what brings the terminal back, ready to write */
     size_t restore_length;
+    const char *colour_trouble;
     atomic_bool taken; /* curses has the terminal now */
 } state;
 
@@ -157,13 +158,36 @@ static void leave_locale(void) {
     state.locale = (locale_t)0;
 }
 
+static bool has_entry(const char *name) {
+    int found = 0;
+    if (setupterm(name, STDOUT_FILENO, &found) != OK) return false;
+    bool direct = tigetflag("RGB") > 0;
+    del_curterm(cur_term);
+    return direct;
+}
+
+/* The terminal's name for curses: NULL for TERM's own. */
+static const char *choose_entry(bool true_colour, char direct[64]) {
+    state.colour_trouble = NULL;
+    if (!true_colour) return NULL;
+    snprintf(direct, 64, "%.50s-direct", getenv("TERM"));
+    if (has_entry(direct)) return direct;
+    if (has_entry("xterm-direct")) return "xterm-direct";
+    state.colour_trouble = "True colour needs the terminfo entry xterm-direct (Debian: the package ncurses-term).";
+    return NULL;
+}
+
+const char *terminal_colour_trouble(void) {
+    return state.colour_trouble;
+}
+
 /* Signals first: whatever goes wrong later is undone by their emergency as well. */
-static status take(report *r) {
+static status take(const char *entry, report *r) {
     status s = capture_begin(r);
     if (s != STATUS_OK) return s;
     s = signals_install(give_back_now, r);
     if (s == STATUS_OK) {
-        state.screen = newterm(NULL, state.output, stdin);
+        state.screen = newterm(entry, state.output, stdin);
         if (state.screen) {
             prepare_restore();
             state.taken = true;
@@ -179,7 +203,8 @@ static status take(report *r) {
     return s;
 }
 
-status terminal_open(bool *unicode, report *r) {
+status terminal_open(bool true_colour, bool *unicode, report *r) {
+    char direct[64];
     const char *why;
     if (!tui_possible(&why)) return report_set(r, STATUS_SYSTEM, "the live view is off: %s", why);
     if (tcgetattr(STDIN_FILENO, &state.modes) != 0)
@@ -187,7 +212,7 @@ status terminal_open(bool *unicode, report *r) {
     status s = open_output(r);
     if (s != STATUS_OK) return s;
     *unicode = enter_locale();
-    s = take(r);
+    s = take(choose_entry(true_colour, direct), r);
     if (s == STATUS_OK) return s;
     leave_locale();
     close_output();

@@ -6,9 +6,12 @@
 
 #include <stdbool.h>
 
-/* Opens curses on standard input and output, installs signals, captures printed text. *unicode: the locale's character
+/* true_colour: by the terminfo entry "TERM-direct" or "xterm-direct", where there is one. Opens curses on standard input and output, installs signals, captures printed text. *unicode: the locale's character
  * set is UTF-8. Errors: STATUS_SYSTEM, with everything as it was. */
-status terminal_open(bool *unicode, report *r);
+status terminal_open(bool true_colour, bool *unicode, report *r);
+
+/* What there is to say about a true colour that was asked for and is not to be had; NULL else. */
+const char *terminal_colour_trouble(void);
 
 /* Gives the terminal back. Printed text stays with capture.h until capture_replay. */
 void terminal_close(void);

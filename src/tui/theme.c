@@ -6,7 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 257, PAIRS = SIDE * SIDE };
+enum { SLOTS = 1 << 16, PAIRS_MOST = 32000 /* half full at most */ };
+
+typedef struct theme_slot {
+    int fore, back, pair; /* pair 0: free */
+} theme_slot;
 
 /* What a style is made of at each depth of colour; −1 is the terminal's own colour. */
 typedef struct style_row {
@@ -87,6 +91,8 @@ static int start_colours(int wanted) {
     if (wanted == 0 || !has_colors() || start_color() == ERR) return 0;
     use_default_colors();
     int most = wanted == TUI_AUTO || wanted > COLORS ? COLORS : wanted;
+    /* Where colours are given as red, green and blue there is no table of 256. */
+    if (COLORS >= TUI_TRUE_COLOUR && most >= 256) return TUI_TRUE_COLOUR;
     return most >= 256 ? 256 : most >= 16 ? 16 : most >= 8 ? 8 : 0;
 }
 
@@ -98,23 +104,52 @@ static tui_theme_kind guess_kind(void) {
     return TUI_DARK;
 }
 
+static theme_slot *find_slot(const tui_theme *theme, int fore, int back) {
+    uint32_t hash = ((uint32_t)fore * 0x9e3779b1u) ^ ((uint32_t)back * 0x85ebca6bu);
+    for (uint32_t i = (hash ^ hash >> 15) % SLOTS;; i = (i + 1) % SLOTS) {
+        theme_slot *slot = &theme->slots[i];
+        if (slot->pair == 0 || (slot->fore == fore && slot->back == back)) return slot;
+    }
+}
+
 tui_ink theme_pair(tui_theme *theme, int foreground, int background) {
-    if (theme->colours == 0) return (tui_ink){A_NORMAL, 0};
-    int slot = (foreground + 1) * SIDE + background + 1;
-    if (slot == 0) return (tui_ink){A_NORMAL, 0};
-    if (theme->pairs[slot] == 0) {
+    if (theme->colours == 0 || (foreground < 0 && background < 0)) return (tui_ink){A_NORMAL, 0};
+    theme_slot *slot = find_slot(theme, foreground, background);
+    if (slot->pair == 0) {
         /* Few terminals run out; those keep the foreground and give up the background. */
         if (theme->pair_count + 1 >= theme->pair_limit)
             return background >= 0 ? theme_pair(theme, foreground, -1) : (tui_ink){A_NORMAL, 0};
-        theme->pairs[slot] = ++theme->pair_count;
-        init_pair(theme->pair_count, (short)foreground, (short)background);
+        *slot = (theme_slot){foreground, background, ++theme->pair_count};
+        init_extended_pair(slot->pair, foreground, background);
     }
-    return (tui_ink){A_NORMAL, theme->pairs[slot]};
+    return (tui_ink){A_NORMAL, slot->pair};
+}
+
+/* Six bits a channel: pairs are not without end. The lowest eight numbers are the terminal's named colours, not shades of blue. */
+static int direct_colour(view_rgb c) {
+    int value = (c.r & 0xfc) << 16 | (c.g & 0xfc) << 8 | (c.b & 0xfc);
+    return value < 8 ? 8 : value;
+}
+
+/* A colour of the 256 as red, green, blue. */
+static view_rgb rgb_of_256(int index) {
+    static const uint8_t levels[] = {0, 95, 135, 175, 215, 255};
+    if (index < 16) {
+        uint8_t high = index >= 8 ? 255 : 205;
+        return (view_rgb){index & 1 ? high : 0, index & 2 ? high : 0, index & 4 ? high : 0};
+    }
+    if (index >= 232) {
+        uint8_t grey = (uint8_t)(8 + 10 * (index - 232));
+        return (view_rgb){grey, grey, grey};
+    }
+    index -= 16;
+    return (view_rgb){levels[index / 36], levels[index / 6 % 6], levels[index % 6]};
 }
 
 int theme_colour(const tui_theme *theme, float value, float light) {
     switch (theme->colours) {
     case 0: return -1;
+    case TUI_TRUE_COLOUR: return direct_colour(view_palette_rgb(theme->palette, value, light));
     case 256: return view_rgb_to_256(view_palette_rgb(theme->palette, value, light));
     default: return view_palette_ansi(theme->palette, value, theme->colours == 16);
     }
@@ -130,12 +165,18 @@ tui_ink theme_value(tui_theme *theme, float value) {
 
 static tui_ink style_ink(tui_theme *theme, const style_row *row) {
     if (theme->colours == 0) return (tui_ink){row->mono, 0};
-    bool many = theme->colours == 256;
-    int fore = many ? row->fore256 : row->fore8;
+    bool direct = theme->colours == TUI_TRUE_COLOUR, many = direct || theme->colours == 256;
+    int fore = many ? row->fore256 : row->fore8, back = many ? row->back256 : row->back8;
     int own = theme->overrides[row - themes[theme->kind].styles] - 1;
-    if (own >= 0x1000000 && many) fore = view_rgb_to_256((view_rgb){(uint8_t)(own >> 16), (uint8_t)(own >> 8), (uint8_t)own});
-    else if (own >= 0 && own < theme->colours) fore = own;
-    tui_ink ink = theme_pair(theme, fore, many ? row->back256 : row->back8);
+    if (own >= 0 && (own < theme->colours || many)) fore = own;
+    if (fore >= 0x1000000) {
+        view_rgb rgb = {(uint8_t)(fore >> 16), (uint8_t)(fore >> 8), (uint8_t)fore};
+        fore = direct ? direct_colour(rgb) : view_rgb_to_256(rgb);
+    } else if (direct && fore >= 0) {
+        fore = direct_colour(rgb_of_256(fore));
+    }
+    if (direct && back >= 0) back = direct_colour(rgb_of_256(back));
+    tui_ink ink = theme_pair(theme, fore, back);
     ink.attributes = row->attributes;
     /* With few colours a bar is told apart by being reversed, and a value by being bold. */
     if (!many && row->back256 >= 0) ink.attributes |= A_REVERSE;
@@ -148,7 +189,7 @@ void theme_choose(tui_theme *theme, tui_theme_kind kind) {
     theme->kind = kind;
     theme->palette = themes[kind].palette;
     theme->pair_count = 0;
-    memset(theme->pairs, 0, PAIRS * sizeof(short));
+    memset(theme->slots, 0, SLOTS * sizeof *theme->slots);
     for (int i = 0; i < STYLE_COUNT; i++) theme->styles[i] = style_ink(theme, &themes[kind].styles[i]);
 }
 
@@ -166,16 +207,16 @@ bool theme_override(tui_theme *theme, const char *style, int colour, const char 
 }
 
 status theme_open(tui_theme *theme, tui_theme_kind kind, int wanted, bool ascii, report *r) {
-    theme->pairs = memory_allocate_array(PAIRS, sizeof(short));
-    if (!theme->pairs) return report_set(r, STATUS_SYSTEM, "out of memory for the screen's colours");
+    theme->slots = memory_allocate_array(SLOTS, sizeof *theme->slots);
+    if (!theme->slots) return report_set(r, STATUS_SYSTEM, "out of memory for the screen's colours");
     theme->ascii = ascii;
     theme->colours = start_colours(wanted);
-    if (theme->colours > 0) theme->pair_limit = (short)(COLOR_PAIRS > 32767 ? 32767 : COLOR_PAIRS);
+    if (theme->colours > 0) theme->pair_limit = COLOR_PAIRS > PAIRS_MOST ? PAIRS_MOST : COLOR_PAIRS;
     theme_choose(theme, kind);
     return STATUS_OK;
 }
 
 void theme_close(tui_theme *theme) {
-    memory_free(theme->pairs, PAIRS * sizeof(short));
-    theme->pairs = NULL;
+    memory_free(theme->slots, SLOTS * sizeof *theme->slots);
+    theme->slots = NULL;
 }

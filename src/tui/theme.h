@@ -26,17 +26,17 @@ typedef enum tui_style {
 
 typedef struct tui_ink {
     attr_t attributes;
-    short pair;
+    int pair;
 } tui_ink;
 
 typedef struct tui_theme {
     tui_theme_kind kind;
-    int colours; /* 256, 16, 8 or 0 */
+    int colours; /* TUI_TRUE_COLOUR, 256, 16, 8 or 0 */
     bool ascii;
     view_palette palette;
-    short pair_count; /* handed out so far; pair 0 is the terminal's own */
-    short pair_limit;
-    short *pairs; /* [257][257] pair of (foreground + 1, background + 1), 0 when none yet */
+    int pair_count; /* handed out so far; pair 0 is the terminal's own */
+    int pair_limit;
+    struct theme_slot *slots; /* a table of pairs by their colours */
     int overrides[STYLE_COUNT]; /* the user's own colours + 1: 0–255, or 0x1000000 + rgb; 0: the theme's */
     tui_ink styles[STYLE_COUNT];
 } tui_theme;
@@ -54,7 +54,7 @@ const char *theme_name(tui_theme_kind kind);
 /* Gives a style ("dim", "bar-good") a colour of the user's own: 0–255, or 0x1000000 + rgb. False, with the nearest name (or NULL): no such style. */
 bool theme_override(tui_theme *theme, const char *style, int colour, const char **nearest);
 
-/* The ink for a colour pair in terminal colours; −1 is the terminal's default. */
+/* The ink for a colour pair in terminal colours (with true colour: 0xrrggbb); −1 is the terminal's default. */
 tui_ink theme_pair(tui_theme *theme, int foreground, int background);
 
 /* The terminal colour of `value` in the palette under `light`, both in [0,1]; −1 without colours. */

@@ -21,13 +21,13 @@ typedef enum tui_theme_kind {
     TUI_THEME_AUTO = TUI_THEMES /* light if COLORFGBG says so, else dark */
 } tui_theme_kind;
 
-enum { TUI_AUTO = -1 };
+enum { TUI_AUTO = -1, TUI_TRUE_COLOUR = 1 << 24 };
 
 typedef struct tui_options {
     tui_theme_kind theme;
     int palette; /* a view_palette, or TUI_AUTO: the theme's */
     int mode;    /* a view_mode, or TUI_AUTO: the finest that the terminal shows */
-    int colours; /* 256, 16, 8, 0, or TUI_AUTO: what the terminal has (0 under NO_COLOR) */
+    int colours; /* TUI_TRUE_COLOUR, 256, 16, 8, 0, or TUI_AUTO: what TERM says (0 under NO_COLOR) */
     bool ascii;  /* only ASCII characters; always so when the locale's character set is not UTF-8 */
     bool log_histogram;
     bool leave_at_end; /* else the screen stays after the run until its user quits */

@@ -184,10 +184,7 @@ static void log_start(tui_app *app, const session *run) {
     if (start_print(&asked, words)) log_line(app, -1, "start", words);
 }
 
-static status app_open(tui_app *app, session *run, bool unicode, report *r) {
-    static user_config config; /* large */
-    report config_trouble;
-    config_read(app, &config, &config_trouble);
+static status app_open(tui_app *app, session *run, bool unicode, const user_config *config, report *config_trouble, report *r) {
     int colours = app->headless ? 0 : app->options.colours;
     status s = theme_open(&app->theme, app->options.theme, colours, app->options.ascii || !unicode, r);
     if (s != STATUS_OK) return s;
@@ -203,7 +200,8 @@ static status app_open(tui_app *app, session *run, bool unicode, report *r) {
     if (run) log_start(app, run);
     app_switch_run(app, run);
     app_show(app, run ? &screen_run : &screen_scenes);
-    config_apply(app, &config, &config_trouble);
+    if (!app->headless && terminal_colour_trouble()) app_notice(app, "%s", terminal_colour_trouble());
+    config_apply(app, config, config_trouble);
     if (app->options.replay) return replay_open(app, app->options.replay, r);
     return STATUS_OK;
 }
@@ -247,11 +245,15 @@ static void nothing(void) {
 
 status tui_workbench(session **run, const tui_options *options, report *r) {
     tui_app app = {.options = *options, .headless = options->headless};
+    static user_config config; /* large */
+    report config_trouble;
     bool unicode = true;
     report_clear(r);
-    status failed = app.headless ? signals_install(nothing, r) : terminal_open(&unicode, r), outcome = STATUS_OK;
+    config_read(&app, &config, &config_trouble);
+    status failed = app.headless ? signals_install(nothing, r) : terminal_open(app.options.colours == TUI_TRUE_COLOUR, &unicode, r);
+    status outcome = STATUS_OK;
     if (failed != STATUS_OK) return failed;
-    failed = app_open(&app, *run, unicode, r);
+    failed = app_open(&app, *run, unicode, &config, &config_trouble, r);
     if (failed == STATUS_OK) loop(&app);
     if (app.headless) signals_remove();
     else terminal_close();

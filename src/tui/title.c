@@ -26,12 +26,15 @@ static state_word describe(const tui_app *app) {
     }
 }
 
-/* The screens' names, the one in view marked. */
+/* The screens' names, the one in view marked; alone where all would leave no room for the run's title. */
 static int draw_screens(const tui_app *app, tui_area area, int column) {
-    int count;
+    enum { TITLE = 16 };
+    int count, wanted = column + TITLE;
     const tui_screen *const *list = tui_screens(&count);
+    for (int i = 0; i < count; i++) wanted += draw_width(list[i]->title) + 2;
     for (int i = 0; i < count; i++) {
         bool here = list[i] == app->screen;
+        if (!here && wanted > area.width) continue;
         column = draw_text(&app->theme, area, 0, column, here ? STYLE_BAR_STRONG : STYLE_BAR, here ? "[" : " ");
         column = draw_text(&app->theme, area, 0, column, here ? STYLE_BAR_STRONG : STYLE_BAR, list[i]->title);
         column = draw_text(&app->theme, area, 0, column, here ? STYLE_BAR_STRONG : STYLE_BAR, here ? "]" : " ");

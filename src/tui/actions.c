@@ -410,7 +410,7 @@ static bool action_has_key(const tui_action *action, int key) {
 
 /* The screen's own keys first: a screen may use a global action's key for what matters more there. */
 static bool find_key(const tui_app *app, int key, action_place *out) {
-    for (int i = 0; i < app->screen->action_count; i++) {
+    for (int i = 0; i < app->screen->action_count && !app->small; i++) {
         *out = (action_place){app->screen, &app->screen->actions[i]};
         if (action_has_key(out->action, key)) return true;
     }
@@ -446,12 +446,12 @@ void actions_press(tui_app *app, int key) {
         answer(app, key);
         if (key != 'Q') return;
     }
-    if (app->shell->prompt.open) {
+    if (app->shell->prompt.open && !app->small) {
         prompt_key(app, key);
         return;
     }
-    if (app->page != PAGE_NONE && scroll_page(app, key)) return;
-    if (app->page == PAGE_NONE && app->screen->key && app->screen->key(app, screen_state(app, app->screen, &r), key)) return;
+    if (app->page != PAGE_NONE && !app->small && scroll_page(app, key)) return;
+    if (app->page == PAGE_NONE && !app->small && app->screen->key && app->screen->key(app, screen_state(app, app->screen, &r), key)) return;
     const tui_binding *own = binding_find(app, key);
     if (own) {
         press_bound(app, own);

@@ -41,6 +41,7 @@ struct tui_app {
 
     bool mouse;     /* wanted */
     bool mouse_on;  /* asked of the terminal */
+    bool small;     /* the terminal is too small for any screen */
     tui_area body;  /* what the screen in view was given last */
 
     bool dirty;  /* something on the screen changed */

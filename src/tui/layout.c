@@ -17,7 +17,8 @@ void workbench_draw(tui_app *app) {
     tui_area all = {0, 0, LINES, COLS};
     report unused;
     erase();
-    if (all.width < SCREEN_MINIMUM_WIDTH || all.height < SCREEN_MINIMUM_HEIGHT) {
+    app->small = all.width < SCREEN_MINIMUM_WIDTH || all.height < SCREEN_MINIMUM_HEIGHT;
+    if (app->small) {
         draw_small(app, all);
     } else {
         bool typing = app->shell->prompt.open;

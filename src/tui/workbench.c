@@ -200,6 +200,7 @@ static status app_open(tui_app *app, session *run, bool unicode, const user_conf
     if (run) log_start(app, run);
     app_switch_run(app, run);
     app_show(app, run ? &screen_run : &screen_scenes);
+    if (!app->screen) return report_set(r, STATUS_SYSTEM, "%s", app->notice);
     if (!app->headless && terminal_colour_trouble()) app_notice(app, "%s", terminal_colour_trouble());
     config_apply(app, config, config_trouble);
     if (app->options.replay) return replay_open(app, app->options.replay, r);

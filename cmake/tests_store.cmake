@@ -4,6 +4,10 @@ sunder_test(checkpoints tests/store/test_checkpoints.c sunder_store)
 sunder_test(store_faults tests/store/test_store_faults.c sunder_store)
 sunder_test(ledger tests/store/test_ledger.c sunder_store)
 sunder_test(ledger_print tests/store/test_ledger_print.c sunder_store)
+sunder_test(player tests/store/test_player.c sunder_session)
+sunder_test(run_table tests/store/test_run_table.c sunder_store)
+sunder_test(run_folder tests/store/test_run_folder.c sunder_store)
+sunder_test(surface tests/unit/test_surface.c sunder_view)
 
 # What other programs make of a run; needs ParaView, and is skipped without it.
 add_executable(make_run tests/store/make_run.c)

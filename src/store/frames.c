@@ -1,6 +1,7 @@
 /* Frames: frames/%06d.hdf, the views beside them, and the run's folder. */
 #include "store/frames.h"
 
+#include "base/memory.h"
 #include "store/files.h"
 #include "store/hdf.h"
 #include "store/series.h"
@@ -188,20 +189,72 @@ static status missing_frame(const char *path, const char *frames, int64_t frame,
     return report_input(r, path, 0, NULL, expected, found, nearest[0] ? nearest : NULL);
 }
 
-status frame_read(const char *folder, int64_t frame, record_list *records, double *time, int64_t *step, report *r) {
-    HDF_ALONE;
-    records->count = 0;
-    char path[FILE_PATH], frames[FILE_PATH];
+/* Opens a frame, or says which frames there are. */
+static status open_frame(const char *folder, int64_t frame, char path[FILE_PATH], hid_t *file, report *r) {
+    char frames[FILE_PATH];
     status s = frame_path(path, folder, "", frame, r);
     if (!s) s = path_format(frames, r, "%s/frames", folder);
     if (!s && access(path, F_OK) != 0) return missing_frame(path, frames, frame, r);
-    hid_t file = -1;
-    if (!s) s = hdf_open(path, &file, r);
+    return s ? s : hdf_open(path, file, r);
+}
+
+static status read_clock(hid_t file, const char *path, double *time, int64_t *step, report *r) {
+    status s = hdf_read_number(file, path, "time", time, r);
+    return s ? s : hdf_read_integer(file, path, "step", step, r);
+}
+
+status frame_read(const char *folder, int64_t frame, record_list *records, double *time, int64_t *step, report *r) {
+    char path[FILE_PATH];
+    hid_t file;
+    HDF_ALONE;
+    records->count = 0;
+    status s = open_frame(folder, frame, path, &file, r);
     if (s) return s;
-    s = hdf_read_number(file, path, "time", time, r);
-    if (!s) s = hdf_read_integer(file, path, "step", step, r);
+    s = read_clock(file, path, time, step, r);
     if (!s) s = hdf_read_records(file, path, "VTKHDF", records, r);
     H5Fclose(file);
+    return s;
+}
+
+status frame_read_named(const char *folder, int64_t frame, const char *const *names, int count, record_list *records,
+                        double *time, int64_t *step, report *r) {
+    char path[FILE_PATH];
+    hid_t file;
+    HDF_ALONE;
+    records->count = 0;
+    status s = open_frame(folder, frame, path, &file, r);
+    if (s) return s;
+    s = read_clock(file, path, time, step, r);
+    if (!s) s = hdf_read_named(file, path, names, count, records, r);
+    H5Fclose(file);
+    return s;
+}
+
+status frame_shapes(const char *folder, int64_t frame, record_list *records, report *r) {
+    char path[FILE_PATH];
+    hid_t file;
+    HDF_ALONE;
+    records->count = 0;
+    status s = open_frame(folder, frame, path, &file, r);
+    if (s) return s;
+    s = hdf_read_shapes(file, path, "VTKHDF", records, r);
+    H5Fclose(file);
+    return s;
+}
+
+status frame_list(const char *folder, int64_t **frames, int *count, report *r) {
+    char path[FILE_PATH];
+    file_numbers numbers;
+    *frames = NULL;
+    *count = 0;
+    status s = path_format(path, r, "%s/frames", folder);
+    if (!s) s = file_numbers_read(path, "", ".hdf", &numbers, r);
+    if (s) return s;
+    *frames = memory_allocate_array(numbers.count, sizeof **frames);
+    if (!*frames) s = report_set(r, STATUS_SYSTEM, "out of memory for the numbers of %zu frames", numbers.count);
+    else if (numbers.count > 0) memcpy(*frames, numbers.items, numbers.count * sizeof **frames);
+    if (!s) *count = (int)numbers.count;
+    file_numbers_free(&numbers);
     return s;
 }
 

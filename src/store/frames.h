@@ -33,6 +33,17 @@ status frame_write(const char *folder, const frame_header *header, const record_
  * those that are. */
 status frame_read(const char *folder, int64_t frame, record_list *records, double *time, int64_t *step, report *r);
 
+/* The same for chosen records only (those that the frame does not have are left out): what a viewer reads again and again. */
+status frame_read_named(const char *folder, int64_t frame, const char *const *names, int count, record_list *records,
+                        double *time, int64_t *step, report *r);
+
+/* What a frame holds: names, types, shapes and units; every record's data is NULL, and nothing is to be freed. */
+status frame_shapes(const char *folder, int64_t frame, record_list *records, report *r);
+
+/* Numbers of the frames in a run's folder, ascending; none when there is no such folder. Free with memory_free(*frames,
+ * *count · 8). */
+status frame_list(const char *folder, int64_t **frames, int *count, report *r);
+
 /* Number of the last whole frame, or −1. */
 int64_t frame_last(const char *folder);
 

@@ -67,4 +67,10 @@ status hdf_write_array(hid_t file, const char *path, const hdf_array *array, int
 /* Reads every dataset outside the group `skip` (may be NULL) into records called by their path. */
 status hdf_read_records(hid_t file, const char *path, const char *skip, record_list *records, report *r);
 
+/* The same without the values: each record's data is NULL. Nothing is to be freed. */
+status hdf_read_shapes(hid_t file, const char *path, const char *skip, record_list *records, report *r);
+
+/* Reads the datasets of these names [count]; those that are not there are left out. */
+status hdf_read_named(hid_t file, const char *path, const char *const *names, int count, record_list *records, report *r);
+
 #endif

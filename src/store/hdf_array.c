@@ -89,6 +89,7 @@ typedef struct reading {
     record_list *records;
     report *report;
     status status;
+    bool shapes; /* names, types and shapes only: data stays NULL */
 } reading;
 
 static status odd_array(reading *read, const char *name, const char *expected, const char *found) {
@@ -120,6 +121,16 @@ static status read_unit(reading *read, hid_t set, char unit[32]) {
     return hdf_read_text(set, read->path, "unit", unit, 32, read->report);
 }
 
+static status add_shape(reading *read, const char *name, record_type kind, int64_t count, int components, const char *unit) {
+    record_list *list = read->records;
+    if (list->count == RECORD_LIMIT) return report_set(read->report, STATUS_SYSTEM, "%s: over %d arrays", read->path, RECORD_LIMIT);
+    record *item = &list->items[list->count++];
+    *item = (record){.type = kind, .components = components, .count = count};
+    snprintf(item->name, sizeof item->name, "%s", name);
+    snprintf(item->unit, sizeof item->unit, "%.31s", unit);
+    return STATUS_OK;
+}
+
 static status read_array(reading *read, hid_t set, const char *name) {
     hid_t type = H5Dget_type(set);
     record_type kind;
@@ -133,6 +144,7 @@ static status read_array(reading *read, hid_t set, const char *name) {
     void *data;
     status s = read_shape(read, set, name, &count, &components);
     if (!s) s = read_unit(read, set, unit);
+    if (!s && read->shapes) return add_shape(read, name, kind, count, components, unit);
     if (!s) s = record_add(read->records, name, kind, count, components, unit, &data, read->report);
     if (s || count == 0) return s;
     if (H5Dread(set, type_of(kind, true), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0) return STATUS_OK;
@@ -152,12 +164,38 @@ static herr_t visit(hid_t file, const char *name, const H5O_info_t *info, void *
     return read->status ? -1 : 0;
 }
 
+static status read_all(hid_t file, reading *read) {
+    herr_t visited = H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, visit, read, H5O_INFO_BASIC);
+    if (visited >= 0) return STATUS_OK;
+    if (!read->status) read->status = hdf_fail(read->report, read->path, "list the arrays");
+    H5Eclear2(H5E_DEFAULT);
+    return read->status;
+}
+
 status hdf_read_records(hid_t file, const char *path, const char *skip, record_list *records, report *r) {
     reading read = {.path = path, .skip = skip, .records = records, .report = r};
-    herr_t visited = H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, visit, &read, H5O_INFO_BASIC);
-    if (visited >= 0) return STATUS_OK;
-    if (!read.status) read.status = hdf_fail(r, path, "list the arrays");
+    status s = read_all(file, &read);
+    if (s) record_clear(records);
+    return s;
+}
+
+status hdf_read_shapes(hid_t file, const char *path, const char *skip, record_list *records, report *r) {
+    reading read = {.path = path, .skip = skip, .records = records, .report = r, .shapes = true};
+    status s = read_all(file, &read);
+    if (s) records->count = 0;
+    return s;
+}
+
+status hdf_read_named(hid_t file, const char *path, const char *const *names, int count, record_list *records, report *r) {
+    reading read = {.path = path, .records = records, .report = r};
+    status s = STATUS_OK;
+    for (int i = 0; i < count && !s; i++) {
+        hid_t set = H5Dopen2(file, names[i], H5P_DEFAULT);
+        if (set < 0) continue;
+        s = read_array(&read, set, names[i]);
+        H5Dclose(set);
+    }
     H5Eclear2(H5E_DEFAULT);
-    record_clear(records);
-    return read.status;
+    if (s) record_clear(records);
+    return s;
 }

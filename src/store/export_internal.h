@@ -1,0 +1,35 @@
+/* What the writers share: text that grows in memory and becomes a file, and values of records. */
+#ifndef SUNDER_STORE_EXPORT_INTERNAL_H
+#define SUNDER_STORE_EXPORT_INTERNAL_H
+
+#include "store/export.h"
+
+typedef struct export_file {
+    const char *path;
+    FILE *out;
+    char *text;
+    size_t size;
+} export_file;
+
+/* Begins a file in memory; export_end writes it whole under its path (with `outcome` STATUS_OK) and frees it. */
+status export_begin(export_file *f, const char *path, report *r);
+status export_end(export_file *f, status outcome, report *r);
+
+/* Element i of a record, whatever its type. */
+double export_element(const record *item, int64_t i);
+
+/* The index-th record of the set that has a row a particle, positions and ids left out: NULL after the last. */
+const record *export_field(const record_list *records, const char *set, int index);
+const record *export_positions(const record_list *records, const char *set);
+
+/* A record's name without its set. */
+const char *export_short_name(const record *item);
+
+/* Suffix of a path, "" for none. */
+const char *export_suffix(const char *path);
+
+/* Little-endian whatever the machine. */
+void export_put_f32(FILE *out, double value);
+void export_put_i32(FILE *out, int64_t value);
+
+#endif

@@ -69,7 +69,7 @@ static void add_solvers(doctor_report *d) {
 static void add_tools(doctor_report *d) {
     static const struct {
         const char *program, *package, *what;
-    } tools[] = {{"sqlite3", "sqlite3", "queries of the ledger by hand"}, {"pvpython", "paraview", "opening frames in ParaView"}};
+    } tools[] = {{"gnuplot", "gnuplot-nox", "figures of sunder plot --out"}, {"sqlite3", "sqlite3", "queries of the ledger by hand"}, {"pvpython", "paraview", "opening frames in ParaView"}};
     for (size_t i = 0; i < sizeof tools / sizeof *tools; i++) {
         char path[64];
         snprintf(path, sizeof path, "/usr/bin/%s", tools[i].program);

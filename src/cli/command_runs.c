@@ -1,82 +1,86 @@
-/* sunder runs: list, show and compare what the ledger remembers. */
-#include "cli/cli.h"
+/* sunder runs: what the ledger remembers, asked and changed. */
+#include "cli/runs.h"
 
 #include "base/names.h"
-#include "store/ledger.h"
 
 #include <getopt.h>
 #include <string.h>
 
-static const struct option long_options[] = {
-    {"db", required_argument, NULL, 'd'},    {"json", no_argument, NULL, 'j'}, {"where", required_argument, NULL, 'w'},
-    {"limit", required_argument, NULL, 'l'}, {NULL, 0, NULL, 0}};
-
-typedef struct runs_options {
-    const char *database, *where;
-    bool json;
-    long limit;
-} runs_options;
-
-static status find_run(ledger *l, const char *name, char id[LEDGER_ID], report *r) {
-    char output[1024];
-    return ledger_resolve(l, name, id, output, sizeof output, r);
+status runs_find(ledger *l, const char *name, char id[LEDGER_ID], char *output, report *r) {
+    char ignored[1024];
+    return ledger_resolve(l, name, id, output ? output : ignored, 1024, r);
 }
 
-static status list(ledger *l, const runs_options *o, int count, char **names, report *r) {
-    if (count > 0) return report_input(r, NULL, 0, "runs list", "no run names", names[0], NULL);
-    return ledger_print_list(l, stdout, o->json, o->where, (int)o->limit, r);
-}
-
-static status show(ledger *l, const runs_options *o, int count, char **names, report *r) {
-    char id[LEDGER_ID];
-    if (count != 1) return report_input(r, NULL, 0, "runs show", "one run (an id, its beginning or end, or last)", count ? "more" : "none", NULL);
-    status code = find_run(l, names[0], id, r);
-    return code == STATUS_OK ? ledger_print_show(l, stdout, o->json, id, r) : code;
-}
-
-static status diff(ledger *l, const runs_options *o, int count, char **names, report *r) {
-    char a[LEDGER_ID], b[LEDGER_ID];
-    if (count != 2) return report_input(r, NULL, 0, "runs diff", "two runs", count > 2 ? "more" : "fewer", NULL);
-    status code = find_run(l, names[0], a, r);
-    if (code == STATUS_OK) code = find_run(l, names[1], b, r);
-    return code == STATUS_OK ? ledger_print_diff(l, stdout, o->json, a, b, r) : code;
+status cli_open_ledger(const char *database, char path[1024], ledger **out, report *r) {
+    status code = STATUS_OK;
+    *out = NULL;
+    if (database) snprintf(path, 1024, "%s", database);
+    else code = ledger_default_path(path, 1024, r);
+    return code == STATUS_OK ? ledger_open(path, out, r) : code;
 }
 
 static const struct {
     const char *name;
-    status (*call)(ledger *l, const runs_options *o, int count, char **names, report *r);
-} verbs[] = {{"list", list}, {"show", show}, {"diff", diff}};
+    runs_verb *call;
+} verbs[] = {{"list", verb_list}, {"show", verb_show}, {"diff", verb_diff}, {"best", verb_best}, {"query", verb_query}, {"sql", verb_sql},
+             {"tag", verb_tag},   {"note", verb_note}, {"rm", verb_rm},     {"reproduce", verb_reproduce}};
+enum { VERBS = sizeof verbs / sizeof *verbs };
 
-static status call_verb(const char *verb, ledger *l, const runs_options *o, int count, char **names, report *r) {
-    const char *known[sizeof verbs / sizeof *verbs];
-    for (size_t i = 0; i < sizeof verbs / sizeof *verbs; i++) {
+static runs_verb *find_verb(const char *name, report *r) {
+    const char *known[VERBS + 1];
+    for (int i = 0; i < VERBS; i++) {
         known[i] = verbs[i].name;
-        if (strcmp(verbs[i].name, verb) == 0) return verbs[i].call(l, o, count, names, r);
+        if (strcmp(verbs[i].name, name) == 0) return verbs[i].call;
     }
-    return report_input(r, NULL, 0, "runs", "list, show or diff", verb, name_nearest(verb, known, (int)(sizeof known / sizeof *known)));
+    known[VERBS] = "plot";
+    report_input(r, NULL, 0, "runs", "list, show, diff, best, query, sql, plot, tag, note, rm or reproduce", name, name_nearest(name, known, VERBS + 1));
+    return NULL;
+}
+
+enum { OPTION_DB = 256, OPTION_JSON, OPTION_WHERE, OPTION_LIMIT, OPTION_SCENE, OPTION_MOST, OPTION_YES, OPTION_KEEP_FILES, OPTION_REMOVE, OPTION_OUT, OPTION_THREADS };
+
+static const struct option long_options[] = {
+    {"db", required_argument, NULL, OPTION_DB},       {"json", no_argument, NULL, OPTION_JSON},
+    {"where", required_argument, NULL, OPTION_WHERE}, {"limit", required_argument, NULL, OPTION_LIMIT},
+    {"scene", required_argument, NULL, OPTION_SCENE}, {"most", no_argument, NULL, OPTION_MOST},
+    {"yes", no_argument, NULL, OPTION_YES},           {"keep-files", no_argument, NULL, OPTION_KEEP_FILES},
+    {"remove", no_argument, NULL, OPTION_REMOVE},     {"out", required_argument, NULL, OPTION_OUT},
+    {"threads", required_argument, NULL, OPTION_THREADS}, {NULL, 0, NULL, 0}};
+
+static int parse(runs_options *o, int count, char **arguments) {
+    int option, code = 0;
+    while (code == 0 && (option = getopt_long(count, arguments, "y", long_options, NULL)) != -1) {
+        switch (option) {
+        case OPTION_DB: o->database = optarg; break;
+        case OPTION_JSON: o->json = true; break;
+        case OPTION_WHERE: o->where = optarg; break;
+        case OPTION_LIMIT: code = cli_number("runs", "--limit", optarg, 1, 1000000000, &o->limit); break;
+        case OPTION_SCENE: o->scene = optarg; break;
+        case OPTION_MOST: o->most = true; break;
+        case 'y':
+        case OPTION_YES: o->yes = true; break;
+        case OPTION_KEEP_FILES: o->keep_files = true; break;
+        case OPTION_REMOVE: o->remove = true; break;
+        case OPTION_OUT: o->out = optarg; break;
+        case OPTION_THREADS: code = cli_number("runs", "--threads", optarg, 1, 256, &o->threads); break;
+        default: return cli_usage("runs", "wrong option");
+        }
+    }
+    return code;
 }
 
 int command_runs(int count, char **arguments) {
-    runs_options o = {.limit = 50};
-    int option;
-    while ((option = getopt_long(count, arguments, "", long_options, NULL)) != -1) {
-        if (option == 'd') o.database = optarg;
-        else if (option == 'w') o.where = optarg;
-        else if (option == 'j') o.json = true;
-        else if (option == 'l') {
-            int code = cli_number("runs", "--limit", optarg, 1, 1000000000, &o.limit);
-            if (code) return code;
-        } else return cli_usage("runs", "wrong option");
-    }
-    const char *verb = optind < count ? arguments[optind++] : "list";
-    char path[1024];
+    /* `runs plot` is `plot`, with its own options. */
+    if (count > 1 && strcmp(arguments[1], "plot") == 0) return command_plot(count - 1, arguments + 1);
+    runs_options o = {.limit = -1};
+    int exit = parse(&o, count, arguments);
+    if (exit) return exit;
     report r;
     ledger *l = NULL;
-    status code = STATUS_OK;
-    if (o.database) snprintf(path, sizeof path, "%s", o.database);
-    else code = ledger_default_path(path, sizeof path, &r);
-    if (code == STATUS_OK) code = ledger_open(path, &l, &r);
-    if (code == STATUS_OK) code = call_verb(verb, l, &o, count - optind, arguments + optind, &r);
+    runs_verb *verb = find_verb(optind < count ? arguments[optind++] : "list", &r);
+    if (!verb) return cli_fail(&r);
+    status code = cli_open_ledger(o.database, o.path, &l, &r);
+    if (code == STATUS_OK) code = verb(l, &o, count - optind, arguments + optind, &exit, &r);
     if (l) ledger_close(l);
-    return code == STATUS_OK ? 0 : cli_fail(&r);
+    return code == STATUS_OK ? exit : cli_fail(&r);
 }

@@ -40,7 +40,7 @@ typedef struct sweep_command {
     cli_scene_options given; /* .scene is the sweep's file */
     const char *database;
     long jobs, threads, frames;
-    bool json, quiet;
+    bool json, quiet, list, verbose; /* list: say what is done, and run nothing; verbose: also say when a run starts */
     char path[1024], tag[64]; /* the ledger; the script's name, by which its runs are found again */
     sweep plan;
     int count;
@@ -73,12 +73,12 @@ static void describe_run(const sweep_command *c, int run, char text[RUN_TEXT]) {
         used += (size_t)snprintf(text + used, RUN_TEXT - used, "%s%s=%s", a ? " " : "", c->plan.axes[a].name, axis_value(c, which, a));
 }
 
-static void say(const sweep_command *c, int run) {
+static void say(const sweep_command *c, int run, const char *word) {
     char text[RUN_TEXT];
     if (c->quiet) return;
     describe_run(c, run, text);
     const sweep_run *r = &c->runs[run];
-    fprintf(c->json ? stderr : stdout, "%d/%d  %-11s  %s  %s%s%s\n", run + 1, c->count, state_names[r->state], *r->id ? r->id : "-", text,
+    fprintf(c->json ? stderr : stdout, "%d/%d  %-11s  %s  %s%s%s\n", run + 1, c->count, word, *r->id ? r->id : "-", text,
             *r->message ? "  " : "", r->message);
     fflush(c->json ? stderr : stdout);
 }
@@ -235,7 +235,7 @@ static void reap(sweep_command *c, pid_t pid, int outcome) {
         run->exit_code = WIFEXITED(outcome) ? WEXITSTATUS(outcome) : 128 + WTERMSIG(outcome);
         if (run->exit_code != 130) run->state = run->exit_code == 0 ? RUN_DONE : RUN_FAILED;
         read_output(j, run);
-        say(c, j->run);
+        say(c, j->run, state_names[run->state]);
         close_job(j);
     }
 }
@@ -246,13 +246,15 @@ static status run_all(sweep_command *c, report *r) {
     catch_signals();
     for (int slot = 0; slot < JOBS; slot++) c->job[slot].run = -1;
     for (int i = 0; i < c->count; i++)
-        if (c->runs[i].state != RUN_WAITING) say(c, i);
+        if (c->runs[i].state != RUN_WAITING || c->list) say(c, i, state_names[c->runs[i].state]);
+    if (c->list) return STATUS_OK;
     for (;;) {
         for (int slot = 0; slot < c->jobs && !stopped && code == STATUS_OK; slot++) {
             while (next < c->count && c->runs[next].state != RUN_WAITING) next++;
             if (next == c->count || c->job[slot].run >= 0) continue;
             code = launch(c, slot, next, r);
             if (code == STATUS_OK) going++;
+            if (code == STATUS_OK && c->verbose) say(c, next, "started");
             else close_job(&c->job[slot]);
         }
         if (going == 0) return code;
@@ -332,7 +334,7 @@ static void name_tag(sweep_command *c) {
 
 static int finish(sweep_command *c) {
     report r;
-    status code = tag_runs(c, &r);
+    status code = c->list ? STATUS_OK : tag_runs(c, &r); /* who only looks writes nothing */
     if (code == STATUS_OK && c->json) code = print_json(c, &r);
     if (code != STATUS_OK) return cli_fail(&r);
     int failed = count_state(c, RUN_FAILED);
@@ -344,12 +346,13 @@ static int finish(sweep_command *c) {
 
 /* ---- the command ------------------------------------------------------------------------------------------------- */
 
-enum { OPTION_SET = 256, OPTION_FRAMES, OPTION_THREADS, OPTION_DB, OPTION_JSON, OPTION_QUIET };
+enum { OPTION_SET = 256, OPTION_FRAMES, OPTION_THREADS, OPTION_DB, OPTION_JSON, OPTION_QUIET, OPTION_LIST, OPTION_VERBOSE };
 
 static const struct option long_options[] = {
     {"set", required_argument, NULL, OPTION_SET},         {"frames", required_argument, NULL, OPTION_FRAMES},
     {"threads", required_argument, NULL, OPTION_THREADS}, {"db", required_argument, NULL, OPTION_DB},
     {"json", no_argument, NULL, OPTION_JSON},             {"quiet", no_argument, NULL, OPTION_QUIET},
+    {"list", no_argument, NULL, OPTION_LIST},             {"verbose", no_argument, NULL, OPTION_VERBOSE},
     {"jobs", required_argument, NULL, 'j'},               {NULL, 0, NULL, 0}};
 
 static int parse(sweep_command *c, int count, char **arguments) {
@@ -362,6 +365,8 @@ static int parse(sweep_command *c, int count, char **arguments) {
         else if (option == OPTION_DB) c->database = optarg;
         else if (option == OPTION_JSON) c->json = true;
         else if (option == OPTION_QUIET) c->quiet = true;
+        else if (option == OPTION_LIST) c->list = true;
+        else if (option == OPTION_VERBOSE) c->verbose = true;
         else return cli_usage("sweep", "wrong option");
     }
     if (code) return code;

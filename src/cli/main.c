@@ -14,9 +14,19 @@ static const command commands[] = {
      "simulate a scene: frames, ledger row, live screen with --tui", command_run},
     {"check", "check SCENE [--set KEY=VALUE]… [--recipe NAME] [--json]", "validate a scene without running it", command_check},
     {"explain", "explain SCENE [--set KEY=VALUE]… [--json]", "show the plan: effects, fields, bytes, step limits, cost", command_explain},
-    {"sweep", "sweep SCRIPT.lua [-j N] [--set KEY=VALUE]… [--frames N] [--threads N] [--db FILE] [--json] [--quiet]",
+    {"sweep", "sweep SCRIPT.lua [-j N] [--list] [--set KEY=VALUE]… [--frames N] [--threads N] [--db FILE] [--json] [--quiet] [--verbose]",
      "run a scene over lists of values; what is done already is left out", command_sweep},
-    {"runs", "runs list | show RUN | diff RUN RUN [--db FILE] [--json]", "ask the ledger about past runs", command_runs},
+    {"runs", "runs list [--where CONDITION] [--limit N] | show RUN | diff RUN RUN | best [MEASURE] [--most] [--scene TEXT] | query [NAME [KEY=VALUE]…]\n"
+             "         runs sql QUERY [KEY=VALUE]… | plot RUN… | tag RUN [TAG]… [--remove] | note RUN TEXT | rm RUN… [--yes] [--keep-files]\n"
+             "         runs reproduce RUN [--out DIR] [--threads N]      all with [--db FILE] [--json]",
+     "ask the ledger about past runs, write remarks, take runs away, run one again and compare bits", command_runs},
+    {"plot", "plot RUN… [--where CONDITION] [--measure NAME]… [--against PARAMETER] [--log] [--log-x] [--out FILE.png|.svg|.pdf|.gp] [--text]\n"
+             "         [--width N] [--height N] [--db FILE] [--json]",
+     "draw measures over time or against a parameter, in the terminal or (--out) by gnuplot", command_plot},
+    {"export", "export RUN --format csv|json|ply|obj|vtp|usda [--frame N | --all] [--out FILE] [--db FILE] [--json]",
+     "a run for other programs: measures (csv, json), particles (ply, obj, vtp, csv with --frame), a sequence (--all, usda)", command_export},
+    {"mesh", "mesh RUN [--frame N | --all] [--out FILE.ply|.obj|.stl] [--field NAME] [--intact] [--cell L] [--spacing L] [--db FILE] [--json]",
+     "the body's surface as a triangle mesh; --intact opens cracks", command_mesh},
     {"render", "render RUN [--frame N] [--out FILE.png] [--width N] [--height N] [--yaw D] [--pitch D] [--zoom PERCENT]", "draw a frame", command_render},
     {"doctor", "doctor [--json]", "say what this machine and this build can do", command_doctor},
     {"bench", "bench step|sheet [--json] [--csv FILE] [--full] [--case NAME]… [--particles N] [--threads N] [--precision f32|f64] [--seconds S] [--repeat N]\n"

@@ -5,7 +5,7 @@ sunder_test(knob_panel ${CMAKE_SOURCE_DIR}/tests/unit/test_knob_panel.c sunder_t
 
 add_executable(demo_tui ${CMAKE_SOURCE_DIR}/tests/tui/demo_tui.c ${CMAKE_SOURCE_DIR}/tests/tui/fake_session.c)
 target_include_directories(demo_tui PRIVATE ${CMAKE_SOURCE_DIR}/tests)
-target_link_libraries(demo_tui PRIVATE sunder_tui sunder_sim)
+target_link_libraries(demo_tui PRIVATE sunder_tui sunder_session sunder_sim)
 
 find_package(Python3 COMPONENTS Interpreter)
 if(Python3_FOUND)

@@ -1,5 +1,7 @@
 #include "tui/fake_session.h"
 
+#include "session/recall.h"
+
 #include "base/memory.h"
 #include "base/random.h"
 
@@ -391,4 +393,21 @@ void session_request(const session *s, session_options *out) {
 
 session_options session_options_default(void) {
     return (session_options){.simd = "auto", .precision = 32, .frames = -1, .checkpoint_every = 1, .keep = 2};
+}
+
+/* ---- recall.h: a synthetic run leaves no folder to be run again from -------------------------------------------- */
+
+status session_recall_run(ledger *l, const char *id, const char *folder, session_recall **out, report *r) {
+    (void)l, (void)id;
+    *out = NULL;
+    return report_input(r, folder, 0, "resume", "the folder of a run of sunder", "a synthetic one", NULL);
+}
+
+void session_recall_options(const session_recall *recall, session_options *out) {
+    (void)recall;
+    *out = session_options_default();
+}
+
+void session_recall_free(session_recall *recall) {
+    (void)recall;
 }

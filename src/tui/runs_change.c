@@ -66,11 +66,13 @@ status runs_delete_now(tui_app *app, const char *argument, report *r) {
     char id[LEDGER_ID], folder[1024];
     run_folder_removal files;
     status code = runs_named(app, s, argument, id, folder, r);
+    if (code == STATUS_OK && app->run && !app->ended && strcmp(app->shot->run_id, id) == 0)
+        return report_set(r, STATUS_INPUT, "%s is the run that goes on: stop it first.", id); /* the ledger believes this process */
     if (code == STATUS_OK) code = run_folder_remove(folder, id, parent_of(s, id), true, &files, r);
     if (code == STATUS_OK) code = ledger_remove(s->l, id, r);
     if (code != STATUS_OK) return code;
     if (s->page != RUNS_TABLE) (void)runs_back(app, "", r);
-    code = run_folder_remove(folder, id, NULL, false, &files, r);
+    code = run_folder_remove(folder, id, parent_of(s, id), false, &files, r); /* the table is still the one from before */
     runs_reload(app, s, true);
     if (code == STATUS_OK && files.kept) app_notice(app, "%s is gone; %d files that are no run's stay in %s", id, files.kept, folder);
     else if (code == STATUS_OK) app_notice(app, "%s is gone", id);

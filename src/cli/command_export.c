@@ -13,7 +13,7 @@
 #include <string.h>
 
 typedef struct export_command {
-    const char *run, *database, *format, *out;
+    const char *run, *database, *format, *out, *part; /* part: solid or sheet, of a scene with both */
     long frame; /* −1: the last */
     bool all, json;
     char id[LEDGER_ID], folder[1024];
@@ -21,12 +21,12 @@ typedef struct export_command {
     int frame_count;
 } export_command;
 
-enum { OPTION_FORMAT = 256, OPTION_FRAME, OPTION_ALL, OPTION_OUT, OPTION_DB, OPTION_JSON };
+enum { OPTION_FORMAT = 256, OPTION_FRAME, OPTION_ALL, OPTION_OUT, OPTION_DB, OPTION_JSON, OPTION_PART };
 
 static const struct option long_options[] = {
     {"format", required_argument, NULL, OPTION_FORMAT}, {"frame", required_argument, NULL, OPTION_FRAME}, {"all", no_argument, NULL, OPTION_ALL},
     {"out", required_argument, NULL, OPTION_OUT},       {"db", required_argument, NULL, OPTION_DB},       {"json", no_argument, NULL, OPTION_JSON},
-    {NULL, 0, NULL, 0}};
+    {"part", required_argument, NULL, OPTION_PART},     {NULL, 0, NULL, 0}};
 
 static int parse(export_command *c, int count, char **arguments) {
     int option, code = 0;
@@ -38,6 +38,7 @@ static int parse(export_command *c, int count, char **arguments) {
         case OPTION_OUT: c->out = optarg; break;
         case OPTION_DB: c->database = optarg; break;
         case OPTION_JSON: c->json = true; break;
+        case OPTION_PART: c->part = optarg; break;
         default: return cli_usage("export", "wrong option");
         }
     }
@@ -116,10 +117,25 @@ static status export_numbers(ledger *l, const export_command *c, report *r) {
 
 /* ---- particles --------------------------------------------------------------------------------------------------- */
 
+/* Forgets the arrays of the other engine. */
+static status keep_part(record_list *records, const char *part, report *r) {
+    size_t front = strlen(part);
+    int kept = 0;
+    record *rest = records->items;
+    for (int i = 0; i < records->count; i++) {
+        record item = rest[i];
+        if (strncmp(item.name, part, front) == 0 && item.name[front] == '/') rest[kept++] = item;
+        else memory_free(item.data, (size_t)item.count * (size_t)item.components * record_type_size(item.type));
+    }
+    records->count = kept;
+    return kept > 0 ? STATUS_OK : report_input(r, NULL, 0, "--part", "solid or sheet, whichever the run has", part, NULL);
+}
+
 static status write_points(const export_command *c, int64_t frame, const char *path, double *time, report *r) {
     record_list records = {0};
     int64_t step;
     status code = frame_read(c->folder, frame, &records, time, &step, r);
+    if (code == STATUS_OK && c->part) code = keep_part(&records, c->part, r);
     export_points points = {.records = &records, .set = export_set(&records), .frame = frame, .time = *time};
     if (code == STATUS_OK && !points.set) code = report_set(r, STATUS_SYSTEM, "frame %" PRId64 " has no particles", frame);
     if (code == STATUS_OK) code = export_points_write(path, &points, r);
@@ -163,7 +179,8 @@ static status read_frame(void *context, int index, record_list *records, int64_t
     double time;
     int64_t step;
     *frame = c->frames[index];
-    return frame_read(c->folder, *frame, records, &time, &step, r);
+    status code = frame_read(c->folder, *frame, records, &time, &step, r);
+    return code == STATUS_OK && c->part ? keep_part(records, c->part, r) : code;
 }
 
 static status take_rate(void *context, const ledger_cell *cells, int count, report *r) {

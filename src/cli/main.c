@@ -23,7 +23,7 @@ static const command commands[] = {
     {"plot", "plot RUN… [--where CONDITION] [--measure NAME]… [--against PARAMETER] [--log] [--log-x] [--out FILE.png|.svg|.pdf|.gp] [--text]\n"
              "         [--width N] [--height N] [--db FILE] [--json]",
      "draw measures over time or against a parameter, in the terminal or (--out) by gnuplot", command_plot},
-    {"export", "export RUN --format csv|json|ply|obj|vtp|usda [--frame N | --all] [--out FILE] [--db FILE] [--json]",
+    {"export", "export RUN --format csv|json|ply|obj|vtp|usda [--frame N | --all] [--part solid|sheet] [--out FILE] [--db FILE] [--json]",
      "a run for other programs: measures (csv, json), particles (ply, obj, vtp, csv with --frame), a sequence (--all, usda)", command_export},
     {"mesh", "mesh RUN [--frame N | --all] [--out FILE.ply|.obj|.stl] [--field NAME] [--intact] [--cell L] [--spacing L] [--db FILE] [--json]",
      "the body's surface as a triangle mesh; --intact opens cracks", command_mesh},

@@ -10,11 +10,11 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { PLAYER_FIELDS = 48, PLAYER_NAME = 32, PLAYER_PATH = 1024, PLAYER_SLOTS = 256, DEFAULT_CACHE = 256 << 20 };
+enum { PLAYER_FIELDS = 48, PLAYER_NAME = 32, PLAYER_PATH = 1024, PLAYER_SLOTS = 256, PLAYER_SETS = 2, PLAYER_SOURCES = 4, DEFAULT_CACHE = 256 << 20 };
 
 /* A frame that has been read. */
 typedef struct slot {
-    int64_t frame, step, count;
+    int64_t frame, step, count, counts[PLAYER_SETS]; /* counts: of each set */
     double time;
     float *position; /* [count][3] */
     float *value;    /* [count] of `field`; NULL when field is −1 */
@@ -25,7 +25,8 @@ typedef struct slot {
 } slot;
 
 struct frame_player {
-    char folder[PLAYER_PATH], set[16]; /* set: "solid" or "sheet", whose particles are shown */
+    char folder[PLAYER_PATH], sets[PLAYER_SETS][16]; /* sets: "solid", "sheet": whose particles are shown, one after the other */
+    int set_count;
     int64_t *frames;                   /* [frame_count] */
     int frame_count, field_count, slot_count;
     char fields[PLAYER_FIELDS][PLAYER_NAME];
@@ -36,38 +37,42 @@ struct frame_player {
 
 /* ---- quantities -------------------------------------------------------------------------------------------------- */
 
-static bool has(const record_list *shapes, const char *set, const char *field, int components) {
-    char name[RECORD_NAME];
-    snprintf(name, sizeof name, "%s/%s", set, field);
-    const record *item = record_find(shapes, name);
-    return item && item->components == components;
-}
-
-static void add_field(frame_player *p, const char *name) {
-    if (p->field_count == PLAYER_FIELDS || strlen(name) >= PLAYER_NAME) return;
-    snprintf(p->fields[p->field_count++], PLAYER_NAME, "%s", name);
-}
-
-/* Arrays with a row a particle and one component, and what follows from the vectors and tensors. */
-static void find_fields(frame_player *p, const record_list *shapes, int64_t count) {
-    size_t front = strlen(p->set) + 1;
-    for (int i = 0; i < shapes->count; i++) {
-        const record *item = &shapes->items[i];
-        bool ours = strncmp(item->name, p->set, front - 1) == 0 && item->name[front - 1] == '/';
-        if (ours && item->components == 1 && item->count == count && strcmp(item->name + front, "id") != 0)
-            add_field(p, item->name + front);
-    }
-    if (has(shapes, p->set, "velocity", 3)) add_field(p, "speed");
-    if (has(shapes, p->set, "deformation_gradient", 9)) {
-        add_field(p, "stretch");
-        if (has(shapes, p->set, "fibre", 3)) add_field(p, "fibre_stretch");
-    }
-}
-
 static int find_field(const frame_player *p, const char *name) {
     for (int i = 0; i < p->field_count; i++)
         if (strcmp(p->fields[i], name) == 0) return i;
     return -1;
+}
+
+static const record *find_in(const record_list *records, const char *set, const char *field) {
+    char name[RECORD_NAME];
+    snprintf(name, sizeof name, "%s/%s", set, field);
+    return record_find(records, name);
+}
+
+static bool has(const record_list *shapes, const char *set, const char *field, int components) {
+    const record *item = find_in(shapes, set, field);
+    return item && item->components == components;
+}
+
+static void add_field(frame_player *p, const char *name) {
+    if (p->field_count == PLAYER_FIELDS || strlen(name) >= PLAYER_NAME || find_field(p, name) >= 0) return;
+    snprintf(p->fields[p->field_count++], PLAYER_NAME, "%s", name);
+}
+
+/* Of one set: arrays with a row a particle and one component, and what follows from the vectors and tensors. */
+static void find_fields(frame_player *p, const char *set, const record_list *shapes, int64_t count) {
+    size_t front = strlen(set) + 1;
+    for (int i = 0; i < shapes->count; i++) {
+        const record *item = &shapes->items[i];
+        bool ours = strncmp(item->name, set, front - 1) == 0 && item->name[front - 1] == '/';
+        if (ours && item->components == 1 && item->count == count && strcmp(item->name + front, "id") != 0)
+            add_field(p, item->name + front);
+    }
+    if (has(shapes, set, "velocity", 3)) add_field(p, "speed");
+    if (has(shapes, set, "deformation_gradient", 9)) {
+        add_field(p, "stretch");
+        if (has(shapes, set, "fibre", 3)) add_field(p, "fibre_stretch");
+    }
 }
 
 static status unknown_field(const frame_player *p, const char *name, report *r) {
@@ -171,56 +176,76 @@ static slot *make_room(frame_player *p, size_t bytes) {
 /* ---- reading ----------------------------------------------------------------------------------------------------- */
 
 static status read_records(const frame_player *p, int64_t frame, const char *const *fields, int count, record_list *records, slot *clock, report *r) {
-    char paths[4][RECORD_NAME];
-    const char *names[4] = {NULL};
-    for (int i = 0; i < count; i++) {
-        snprintf(paths[i], sizeof paths[i], "%s/%s", p->set, fields[i]);
-        names[i] = paths[i];
-    }
-    return frame_read_named(p->folder, frame, names, count, records, &clock->time, &clock->step, r);
+    char paths[PLAYER_SETS * PLAYER_SOURCES][RECORD_NAME];
+    const char *names[PLAYER_SETS * PLAYER_SOURCES] = {NULL};
+    int wanted = 0;
+    for (int set = 0; set < p->set_count; set++)
+        for (int i = 0; i < count; i++, wanted++) {
+            snprintf(paths[wanted], sizeof paths[0], "%s/%s", p->sets[set], fields[i]);
+            names[wanted] = paths[wanted];
+        }
+    return frame_read_named(p->folder, frame, names, wanted, records, &clock->time, &clock->step, r);
 }
 
-static const record *required(const frame_player *p, const record_list *records, const char *field, int64_t count, int components, report *r) {
-    char name[RECORD_NAME];
-    snprintf(name, sizeof name, "%s/%s", p->set, field);
-    const record *item = record_find(records, name);
+static const record *required(const frame_player *p, const record_list *records, const char *set, const char *field, int64_t count, int components, report *r) {
+    const record *item = find_in(records, set, field);
     if (item && (count < 0 || item->count == count) && (components == 0 || item->components == components)) return item;
-    report_set(r, STATUS_SYSTEM, "%.400s: a frame without a whole array '%s'", p->folder, name);
+    report_set(r, STATUS_SYSTEM, "%.400s: a frame without a whole array '%s/%s'", p->folder, set, field);
     return NULL;
 }
 
 static status fill_place(const frame_player *p, const record_list *records, slot *s, report *r) {
-    const record *position = required(p, records, "position", -1, 3, r);
-    const record *body = position ? required(p, records, "body", position->count, 1, r) : NULL;
-    if (!body) return r->code;
-    size_t n = (size_t)position->count;
-    s->count = position->count;
+    const record *position[PLAYER_SETS], *body[PLAYER_SETS];
+    for (int set = 0; set < p->set_count; set++) {
+        position[set] = required(p, records, p->sets[set], "position", -1, 3, r);
+        body[set] = position[set] ? required(p, records, p->sets[set], "body", position[set]->count, 1, r) : NULL;
+        if (!body[set]) return r->code;
+        s->counts[set] = position[set]->count;
+        s->count += position[set]->count;
+    }
+    size_t n = (size_t)s->count;
     s->position = memory_allocate_array(n, 3 * sizeof *s->position);
     s->body = memory_allocate_array(n, sizeof *s->body);
     if (!s->position || !s->body) return report_set(r, STATUS_SYSTEM, "out of memory for a frame of %zu particles", n);
-    for (int64_t i = 0; i < 3 * s->count; i++) s->position[i] = (float)element(position, i);
-    for (int64_t i = 0; i < s->count; i++) s->body[i] = (int32_t)element(body, i);
+    for (int64_t set = 0, at = 0; set < p->set_count; at += position[set++]->count) {
+        for (int64_t i = 0; i < 3 * position[set]->count; i++) s->position[3 * at + i] = (float)element(position[set], i);
+        for (int64_t i = 0; i < position[set]->count; i++) s->body[at + i] = (int32_t)element(body[set], i);
+    }
     return STATUS_OK;
 }
 
-static status fill_value(const frame_player *p, const record_list *records, slot *s, int field, report *r) {
-    const char *name = p->fields[field], *names[2];
+/* The quantity of one set's particles; false when the set does not have it. */
+static bool fill_set(const char *name, const record_list *records, const char *set, int64_t count, float *value) {
+    const char *names[2];
     const record *sources[2] = {NULL, NULL};
-    int count = sources_of(name, names);
-    for (int i = 0; i < count; i++)
-        if (!(sources[i] = required(p, records, names[i], s->count, 0, r))) return r->code;
+    int needed = sources_of(name, names);
+    for (int i = 0; i < needed; i++) {
+        sources[i] = find_in(records, set, names[i]);
+        if (!sources[i] || sources[i]->count != count) return false;
+    }
+    for (int64_t i = 0; i < count; i++) value[i] = (float)quantity(name, sources, i);
+    return true;
+}
+
+static status fill_value(const frame_player *p, const record_list *records, slot *s, int field, report *r) {
+    const char *name = p->fields[field];
+    bool filled[PLAYER_SETS] = {false}, any = false, fraction = strcmp(name, "damage") == 0 || strcmp(name, "broken") == 0;
+    float low = HUGE_VALF, high = -HUGE_VALF;
     if (!s->value) s->value = memory_allocate_array((size_t)s->count, sizeof *s->value);
     if (!s->value) return report_set(r, STATUS_SYSTEM, "out of memory for '%s'", name);
-    bool fraction = strcmp(name, "damage") == 0 || strcmp(name, "broken") == 0;
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (int64_t i = 0; i < s->count; i++) {
-        double v = quantity(name, sources, i);
-        s->value[i] = (float)v;
-        low = fmin(low, v);
-        high = fmax(high, v);
+    for (int64_t set = 0, at = 0; set < p->set_count; at += s->counts[set++]) {
+        any |= filled[set] = fill_set(name, records, p->sets[set], s->counts[set], s->value + at);
+        for (int64_t i = 0; i < s->counts[set] && filled[set]; i++) {
+            low = fminf(low, s->value[at + i]);
+            high = fmaxf(high, s->value[at + i]);
+        }
     }
-    s->low = fraction || !isfinite(low) ? 0 : (float)low;
-    s->high = fraction || !isfinite(high) ? 1 : (float)high;
+    if (!any) return report_set(r, STATUS_SYSTEM, "%.400s: a frame without a whole array for '%s'", p->folder, name);
+    s->low = fraction || !isfinite(low) ? 0 : low;
+    s->high = fraction || !isfinite(high) ? 1 : high;
+    /* What does not have the quantity stands at its low end. */
+    for (int64_t set = 0, at = 0; set < p->set_count; at += s->counts[set++])
+        for (int64_t i = 0; i < s->counts[set] && !filled[set]; i++) s->value[at + i] = s->low;
     s->field = field;
     return STATUS_OK;
 }
@@ -281,16 +306,14 @@ static status look_inside(frame_player *p, report *r) {
     record_list *shapes = memory_allocate(sizeof *shapes);
     if (!shapes) return report_set(r, STATUS_SYSTEM, "out of memory for a frame's contents");
     status code = frame_shapes(p->folder, p->frames[0], shapes, r);
-    const record *position = NULL;
-    static const char *const sets[] = {"solid", "sheet"};
-    for (int i = 0; i < 2 && code == STATUS_OK && !position; i++) {
-        char name[RECORD_NAME];
-        snprintf(name, sizeof name, "%s/position", sets[i]);
-        snprintf(p->set, sizeof p->set, "%s", sets[i]);
-        position = record_find(shapes, name);
+    static const char *const sets[PLAYER_SETS] = {"solid", "sheet"};
+    for (int i = 0; i < PLAYER_SETS && code == STATUS_OK; i++) {
+        const record *position = find_in(shapes, sets[i], "position");
+        if (!position) continue;
+        snprintf(p->sets[p->set_count++], sizeof p->sets[0], "%s", sets[i]);
+        find_fields(p, sets[i], shapes, position->count);
     }
-    if (code == STATUS_OK && !position) code = report_set(r, STATUS_SYSTEM, "%.400s: frames without particles", p->folder);
-    if (code == STATUS_OK) find_fields(p, shapes, position->count);
+    if (code == STATUS_OK && p->set_count == 0) code = report_set(r, STATUS_SYSTEM, "%.400s: frames without particles", p->folder);
     memory_free(shapes, sizeof *shapes);
     return code;
 }

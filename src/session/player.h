@@ -13,7 +13,8 @@
 
 typedef struct frame_player frame_player;
 
-/* A frame as a picture needs it. Arrays belong to the player and hold until its next call; rows are in the order of ids. */
+/* A frame as a picture needs it. Arrays belong to the player and hold until its next call; rows are in the order of ids,
+ * of a scene with both a solid and a sheet the solid's first. */
 typedef struct frame_view {
     int64_t frame, step;
     double time;

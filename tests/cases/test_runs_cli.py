@@ -222,6 +222,7 @@ def test_exports(box, runs):
     usd = open(box.path("u.usda")).read()
     check("timeCodesPerSecond = 24" in usd and "endTimeCode = 3" in usd and usd.count("        3: [") == usd.count(".timeSamples = {"), "with samples of all frames")
     check(usd.count("{") == usd.count("}") and usd.count("[") == usd.count("]") and 'interpolation = "vertex"' in usd, "well formed")
+    check(box.call("export", ident, "--format", "ply", "--part", "sheet")[0] == 2 and box.call("export", ident, "--format", "ply", "--part", "solid")[0] == 0, "a part of it")
     check(box.call("export", ident, "--format", "plly")[0] == 2 and box.call("export", ident, "--format", "ply", "--out", "a.obj")[0] == 2, "wrong formats")
     check(box.call("export", ident, "--format", "ply", "--frame", "77")[0] == 2, "a frame that is none")
 

@@ -84,6 +84,31 @@ static void test_cache_is_bounded(void) {
     CHECK(memory_live_bytes() == before);
 }
 
+/* A solid and a sheet in one scene: all particles are shown, and a quantity of one of them leaves the other at its low end. */
+static void test_both_engines(void) {
+    frame_player *p;
+    frame_view view;
+    report r;
+    record_list list = {0};
+    frame_header header = header_of(0);
+    int32_t *solid_body, *sheet_body;
+    CHECK(run_folder_create(in_scratch("both"), false, &r) == STATUS_OK);
+    fill_solid(&list, PARTICLES, 0);
+    fill_sheet(&list, 7);
+    if (record_add(&list, "solid/body", RECORD_I32, PARTICLES, 1, "1", (void **)&solid_body, &r) || record_add(&list, "sheet/body", RECORD_I32, 7, 1, "1", (void **)&sheet_body, &r)) abort();
+    sheet_body[2] = 5;
+    CHECK(frame_write(in_scratch("both"), &header, &list, 0, &r) == STATUS_OK);
+    record_clear(&list);
+    CHECK(frame_player_open(in_scratch("both"), 0, &p, &r) == STATUS_OK);
+    CHECK(frame_player_read(p, 0, "diffused", &view, &r) == STATUS_OK && view.count == PARTICLES + 7);
+    CHECK(view.position[3 * (PARTICLES + 2)] == 2 && view.position[3 * (PARTICLES + 2) + 1] == 100 && view.body[PARTICLES + 2] == 5);
+    CHECK_NEAR(view.value[PARTICLES + 2], 1.0 / 3, 1e-7);
+    CHECK_NEAR(view.low, 1.0 / 7, 1e-7);
+    CHECK(view.high == 1 && view.value[3] == view.low);
+    CHECK(frame_player_read(p, 0, "damage", &view, &r) == STATUS_OK && view.value[10] == 0.25F && view.value[PARTICLES + 2] == 0);
+    frame_player_close(p);
+}
+
 static void test_wrong_input(void) {
     frame_player *p;
     frame_view view;
@@ -123,6 +148,7 @@ int main(void) {
     scratch_make();
     RUN(test_shows_what_frames_hold);
     RUN(test_cache_is_bounded);
+    RUN(test_both_engines);
     RUN(test_wrong_input);
     RUN(test_frames_come_and_break);
     return check_finish();

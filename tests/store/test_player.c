@@ -26,7 +26,7 @@ static void write_frames(const char *folder) {
             body[i] = i % 3;
             for (int c = 0; c < 9; c++) gradient[9 * i + c] = c % 4 == 0 ? 1 : 0;
             gradient[9 * i + 4] = 1 + (float)frame / 10;
-            gradient[9 * i + 1] = 0; /* F_xy */
+            if (i == 5) gradient[9 * i + 1] = 0.75F; /* sheared across the fibre: F_xy */
         }
         if (frame_write(folder, &header, &list, 1, &r)) abort();
         record_clear(&list);
@@ -50,6 +50,10 @@ static void check_frame(frame_player *p, int64_t frame, const char *field) {
         CHECK(view.low == view.high && view.high == view.value[0]);
     } else {
         CHECK_NEAR(view.value[3], 1 + (double)frame / 10, 1e-6);
+        double s = 1 + (double)frame / 10, trace = 1 + 0.5625 + s * s;
+        /* |F a₀| of the sheared one, and the larger root of λ⁴ − tr(FᵀF) λ² + det² = 0. */
+        bool along = strcmp(field, "fibre_stretch") == 0;
+        CHECK_NEAR(view.value[5], along ? hypot(0.75, s) : sqrt((trace + sqrt(trace * trace - 4 * s * s)) / 2), 1e-6);
     }
 }
 

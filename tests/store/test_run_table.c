@@ -57,6 +57,7 @@ static void test_cells(void) {
     run_table_free(t);
     CHECK(run_table_read(l, &t, &r) == STATUS_OK && column(t, "alpha")->number[0] == -1 && strcmp(column(t, "alpha")->name, "tube.damage.alpha") == 0);
     CHECK(column(t, "alpha") == column(t, "tube.damage.alpha"));
+    CHECK(run_table_column(t, "lpha", &c, &r) == STATUS_INPUT);
     CHECK(ledger_parameter(l, ids[0], "rope.damage.alpha", "1", -2, NULL, false, &r) == STATUS_OK);
     run_table_free(t);
     CHECK(run_table_read(l, &t, &r) == STATUS_OK);

@@ -11,7 +11,7 @@ SUNDER, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 PULL = os.path.join(SOURCE, "scenes/solid/tube_pull.lua")
 TOWEL = os.path.join(SOURCE, "scenes/sheet/paper_towel.lua")
 SMALL = ["--set", "particles=1500", "--set", "break_stretch=0.02", "--set", "pull=0.6"]
-WET = ["--set", "particles=900"]
+WET = ["--set", "variant=wet", "--set", "dx=0.06", "--set", "pull=1"]
 TURNS = ["2:eta=0.01", "2:tube.fibres.gamma=25", "4:break_stretch=0.01", "5:gravity=0,-3,0"]
 WET_TURNS = ["1:sources.1.strength=3", "2:softening.stiffness=0.9", "3:diffusion.k=2"]
 failures, checks = [], 0

@@ -6,27 +6,60 @@
 
 typedef struct pack_context {
     sheet *state;
-    real dt;
+    double dt;
+    int first_level; /* levels that are due: this and above; −1: all packs take one step */
+    int32_t count;
     void (*stage)(const pack_work *w);
 } pack_context;
+
+static void visit_pack(const pack_context *c, int32_t p, group_result *result) {
+    sheet *s = c->state;
+    pack_work w = {.state = s, .pack = p, .body = &s->bodies[s->packs[p].body], .dt = (real)c->dt, .way = (real)c->dt, .due = true,
+                   .stiffening = &result->stiffening, .result = result};
+    c->stage(&w);
+}
+
+/* Steps of a pack's level and of its reach; within the level's, only its bonds to faster packs are due. */
+static void visit_due_pack(const pack_context *c, int32_t p, group_result *result) {
+    sheet *s = c->state;
+    pack_rates *t = s->rates;
+    int level = t->level[p];
+    bool due = level >= c->first_level;
+    pack_work w = {.state = s, .pack = p, .body = &s->bodies[s->packs[p].body], .dt = (real)ldexp(c->dt, -level), .way = (real)ldexp(c->dt, -t->reach[p]),
+                   .due = due, .sifted = t->reach[p] > level, .share = {due ? 1 : 0, (real)0.5}, .stiffening = &t->stiffening[p], .result = result};
+    c->stage(&w);
+}
 
 static void visit_group(void *context, int64_t group, int worker) {
     (void)worker;
     const pack_context *c = context;
     sheet *s = c->state;
     int32_t last = (int32_t)(group + 1) * GROUP_PACKS;
-    for (int32_t p = (int32_t)group * GROUP_PACKS; p < last && p < s->pack_count; p++) {
-        pack_work w = {.state = s, .pack = p, .body = &s->bodies[s->packs[p].body], .dt = c->dt, .result = &s->results[group]};
-        c->stage(&w);
+    for (int32_t k = (int32_t)group * GROUP_PACKS; k < last && k < c->count; k++) {
+        if (c->first_level < 0) visit_pack(c, k, &s->results[group]);
+        else visit_due_pack(c, s->rates->order[k], &s->results[group]);
     }
 }
 
 void sheet_for_packs(sheet *s, real dt, void (*stage)(const pack_work *w)) {
-    pack_context c = {s, dt, stage};
+    pack_context c = {.state = s, .dt = (double)dt, .first_level = -1, .count = s->pack_count, .stage = stage};
     parallel_for(s->threads, s->group_count, 4, visit_group, &c);
 }
 
-void sheet_break_bonds(sheet *s, int64_t first, unsigned lanes, group_result *result) {
+void sheet_for_due(sheet *s, double dt, int part, void (*stage)(const pack_work *w)) {
+    const pack_rates *t = s->rates;
+    if (!t) {
+        sheet_for_packs(s, (real)dt, stage);
+        return;
+    }
+    int level = part == 0 ? 0 : t->finest - __builtin_ctz((unsigned)part);
+    pack_context c = {.state = s, .dt = dt, .first_level = level, .count = t->active[level], .stage = stage};
+    parallel_for(s->threads, (c.count + GROUP_PACKS - 1) / GROUP_PACKS, 4, visit_group, &c);
+}
+
+void sheet_break_bonds(const pack_work *w, int64_t first, unsigned lanes) {
+    sheet *s = w->state;
+    if (s->rates) s->rates->cracked[w->pack] = s->rates->step;
     for (int i = 0; i < VEC_LANES; i++) {
         if (!(lanes >> i & 1)) continue;
         s->stiffness[first + i] = 0;
@@ -34,7 +67,7 @@ void sheet_break_bonds(sheet *s, int64_t first, unsigned lanes, group_result *re
         if (s->conduct) s->conduct[first + i] = 0;
         if (s->dilation) s->dilation[first + i] = 0;
         if (s->laplace) s->laplace[first + i] = 0;
-        result->broken++;
+        w->result->broken++;
     }
 }
 
@@ -135,7 +168,7 @@ static void move(const pack_work *w) {
     const real *v = s->velocity + (int64_t)w->pack * 3 * PACK;
     for (int lane = 0; lane < s->packs[w->pack].count; lane++) {
         real *restrict node = node_at(s, w->pack, lane);
-        const real step[4] = {w->dt * v[lane], w->dt * v[PACK + lane], w->dt * v[2 * PACK + lane], 0};
+        const real step[4] = {w->way * v[lane], w->way * v[PACK + lane], w->way * v[2 * PACK + lane], 0};
         real moved[4], sum[4], back[4];
         for (int c = 0; c < 4; c++) moved[c] = node[NODE_LOW + c] + step[c];
         for (int c = 0; c < 4; c++) sum[c] = node[c] + moved[c];
@@ -148,7 +181,7 @@ static void move(const pack_work *w) {
     }
 }
 
-static void advance_pack(const pack_work *w) {
+static void change_velocities(const pack_work *w) {
     sheet *s = w->state;
     for (int c = 0; c < 3; c++) {
         real *v = s->velocity + ((int64_t)w->pack * 3 + c) * PACK, step = (real)s->definition.gravity[c] * w->dt;
@@ -156,13 +189,17 @@ static void advance_pack(const pack_work *w) {
     }
     for (int e = 0; e < SHEET_EFFECTS; e++)
         if ((s->mask >> e & 1) && sheet_effect_table[e]->sheet->velocity) sheet_effect_table[e]->sheet->velocity(w);
-    if (s->definition.boundary_count) {
+}
+
+static void advance_pack(const pack_work *w) {
+    if (w->due) change_velocities(w);
+    if (w->state->definition.boundary_count) {
         move_held(w);
         collide(w);
     }
     move(w);
 }
 
-void sheet_advance(sheet *s, real dt) {
-    sheet_for_packs(s, dt, advance_pack);
+void sheet_advance(sheet *s, double dt, int part) {
+    sheet_for_due(s, dt, part, advance_pack);
 }

@@ -5,9 +5,12 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Cells begin so much before the lowest particle, in cells: those of a lattice then have no particle on their edges. */
+static const double EDGE = 0.125;
+
 /* ---- order ------------------------------------------------------------------------------------------------------- */
 
-/* Particles of scattered sets are ordered by cells along a Morton curve, so that neighbours lie near in memory; lattices come in rows. */
+/* Particles are ordered by cells of two spacings along a Morton curve: a pack is a patch of about 4 × 4, and neighbours lie near in memory. */
 typedef struct ordered {
     uint64_t key;
     int32_t particle;
@@ -32,10 +35,10 @@ static void order_body(const sheet *s, const sheet_body *b, ordered *order) {
         for (int c = 0; c < 3; c++) low[c] = fmin(low[c], rest[3 * i + c]);
     for (int64_t i = 0; i < b->count; i++) {
         order[i] = (ordered){.particle = (int32_t)(b->first + i)};
-        for (int c = 0; c < 3 && b->lattice == SHEET_SCATTERED; c++)
-            order[i].key |= spread_bits((uint64_t)fmin((rest[3 * (b->first + i) + c] - low[c]) / size, 0x1fffff)) << c;
+        for (int c = 0; c < 3; c++)
+            order[i].key |= spread_bits((uint64_t)fmin((rest[3 * (b->first + i) + c] - low[c]) / size + EDGE, 0x1fffff)) << c;
     }
-    if (b->lattice == SHEET_SCATTERED) qsort(order, (size_t)b->count, sizeof *order, compare_ordered);
+    qsort(order, (size_t)b->count, sizeof *order, compare_ordered);
 }
 
 /* ---- particles --------------------------------------------------------------------------------------------------- */
@@ -113,34 +116,32 @@ static void load_bond(sheet *s, const sheet_network *n, int64_t at, int64_t k) {
     if (s->limit) s->limit[at] = (real)n->limit[k];
     if (s->history && broken) s->history[at] = BROKEN;
     if (s->conduct) s->conduct[at] = broken ? 0 : (real)n->conduct[k];
-    if (s->laplace) s->laplace[at] = broken ? 0 : (real)n->laplace[k];
-    if (s->coupling) {
+    if (s->laplace) s->laplace[at] = broken || !n->laplace ? 0 : (real)n->laplace[k];
+    if (s->coupling && n->coupling) {
         s->coupling[at] = (real)n->coupling[k];
         s->dilation[at] = broken ? 0 : (real)n->dilation[k];
     }
 }
 
-/* Curvature is known where all bonds are left and lie evenly: Σ laplace r⁰ = 0. There `whole` is Σ laplace, as the loop adds it. */
+/* Curvature is known where bonds lie evenly, Σ laplace r⁰ = 0, and as long as all of them are left: `whole` is Σ laplace, as the loop adds it. */
 static void mark_whole(sheet *s, const sheet_network *n, int32_t p, int lane) {
     int64_t i = s->id[(int64_t)p * PACK + lane];
     real *whole = &s->whole[(int64_t)p * PACK + lane];
     double moment[3] = {0}, scale = 0;
     real sum = 0;
     *whole = -1;
-    if (i < 0) return;
+    if (i < 0 || !n->laplace) return;
     const double *rest = s->definition.rest;
     for (int64_t k = n->start[i]; k < n->start[i + 1]; k++) {
         for (int c = 0; c < 3; c++) moment[c] += n->laplace[k] * (rest[3 * n->neighbour[k] + c] - rest[3 * i + c]);
         scale += n->laplace[k] * n->length[k];
     }
-    for (int32_t k = 0; k < s->packs[p].slots; k++) {
-        real laplace = s->laplace[((int64_t)s->packs[p].first_slot + k) * PACK + lane];
-        sum += laplace;
-    }
+    for (int64_t k = n->start[i]; k < n->start[i + 1]; k++)
+        if (n->weight[k] > 0) sum += (real)n->laplace[k];
     if (fabs(moment[0]) + fabs(moment[1]) + fabs(moment[2]) < 1e-6 * scale) *whole = sum;
 }
 
-void sheet_fill_bonds(sheet *s, const sheet_network *n) {
+static void fill_bonds(sheet *s, const sheet_network *n) {
     for (int32_t p = 0; p < s->pack_count; p++)
         for (int lane = 0; lane < PACK; lane++) {
             int64_t at = (int64_t)s->packs[p].first_slot * PACK + lane, i = s->id[(int64_t)p * PACK + lane];
@@ -200,7 +201,7 @@ static void list_arrays(sheet *s, const sheet_network *n, array_row rows[ARRAYS]
 
 static status allocate_rows(array_row *rows, int from, int to, report *r) {
     for (int i = from; i < to; i++) {
-        if (!rows[i].wanted) continue;
+        if (!rows[i].wanted || *rows[i].array) continue;
         *rows[i].array = memory_allocate_array(rows[i].count, rows[i].size);
         if (!*rows[i].array) return report_set(r, STATUS_SYSTEM, "out of memory for a sheet's particles and bonds");
     }
@@ -219,7 +220,15 @@ status sheet_layout(sheet *s, const sheet_network *n, report *r) {
     if (code != STATUS_OK) return code;
     list_arrays(s, n, rows);
     code = allocate_rows(rows, BOND_ROWS, ARRAYS, r);
-    if (code == STATUS_OK) sheet_fill_bonds(s, n);
+    if (code == STATUS_OK) fill_bonds(s, n);
+    return code;
+}
+
+status sheet_refill(sheet *s, const sheet_network *n, report *r) {
+    array_row rows[ARRAYS];
+    list_arrays(s, n, rows);
+    status code = allocate_rows(rows, 0, ARRAYS, r); /* what a knob has turned on */
+    if (code == STATUS_OK) fill_bonds(s, n);
     return code;
 }
 

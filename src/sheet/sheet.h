@@ -13,6 +13,8 @@
 #include <stdint.h>
 
 enum { SHEET_MATERIALS = 16, SHEET_BODIES = 32, SHEET_BOUNDARIES = 64, SHEET_SOURCES = 64, SHEET_NOTCHES = 64 };
+/* A step is divided by 2^l, l < SHEET_LEVELS, where the effect multirate asks for it. */
+enum { SHEET_LEVELS = 8 };
 enum { SHEET_PHASE_BONDS, SHEET_PHASE_DIFFUSION, SHEET_PHASE_CONTACT, SHEET_PHASE_ADVANCE, SHEET_PHASES };
 
 /* The `provides` of the effects that are laws of a bond, and the `needs` of those that build on one. */
@@ -60,6 +62,7 @@ typedef struct sheet_feed {
 typedef struct sheet_definition {
     int threads;
     double gravity[3];
+    double cfl; /* share of its own limit that each pack of particles may step by, where steps are divided; 0: all of it */
     uint32_t effect_mask; /* effects that any body uses, by index in the effect list */
     int material_count, body_count, boundary_count, notch_count, source_count;
     sheet_material materials[SHEET_MATERIALS];
@@ -99,6 +102,13 @@ typedef struct sheet_calibration {
     double beta;             /* decay of the elastoplastic law; 0 for others */
     int neighbours;          /* of an interior particle, with weight > 0 */
 } sheet_calibration;
+
+/* How the last step was divided, and what it has cost. */
+typedef struct sheet_rates {
+    int levels;                       /* 1: one step for all */
+    int64_t particles[SHEET_LEVELS];  /* that take steps of 2^−l */
+    int64_t bond_updates;             /* evaluations of a bond's force since the engine was made, bonds counted from both ends */
+} sheet_rates;
 
 typedef struct sheet sheet;
 
@@ -143,6 +153,9 @@ typedef struct sheet_engine {
     /* A knob was turned: values in the definition's materials changed. Between frames. Histories keep their values. */
     status (*refresh)(sheet *s, report *r);
     double (*bytes_per_particle)(const sheet *s);
+    void (*rates)(const sheet *s, sheet_rates *out);
+    /* The level of each particle in the last step, in order of id: out[count]. */
+    void (*levels)(const sheet *s, uint8_t *out);
     void (*phases)(const sheet *s, double seconds[SHEET_PHASES]);
 } sheet_engine;
 

@@ -161,23 +161,34 @@ static void collide(const pack_work *w) {
 
 /* ---- positions --------------------------------------------------------------------------------------------------- */
 
-/* high + low + step, with high the rounded sum: the error of the addition is kept (Knuth's two-sum). Four at a time: θ moves by nothing. */
+/* Where a lane has run away, or its θ is not finite, the comparison fails. */
+static void find_fault(const pack_work *w, int first, vec_mask good) {
+    unsigned bad = 0;
+    for (int i = 0; i < VEC_LANES; i++) bad |= (unsigned)(good[i] == 0) << i;
+    if (bad && !w->result->fault) w->result->fault = w->pack * PACK + first + __builtin_ctz(bad) + 1;
+}
+
+/* high + low + step, with high the rounded sum: the error of the addition is kept (Knuth's two-sum). Padding, which has no area, stays. */
 static void move(const pack_work *w) {
     sheet *s = w->state;
-    real farthest = (real)(0.5 * s->definition.bodies[s->packs[w->pack].body].spacing);
-    const real *v = s->velocity + (int64_t)w->pack * 3 * PACK;
-    for (int lane = 0; lane < s->packs[w->pack].count; lane++) {
-        real *restrict node = node_at(s, w->pack, lane);
-        const real step[4] = {w->way * v[lane], w->way * v[PACK + lane], w->way * v[2 * PACK + lane], 0};
-        real moved[4], sum[4], back[4];
-        for (int c = 0; c < 4; c++) moved[c] = node[NODE_LOW + c] + step[c];
-        for (int c = 0; c < 4; c++) sum[c] = node[c] + moved[c];
-        for (int c = 0; c < 4; c++) back[c] = sum[c] - node[c];
-        for (int c = 0; c < 4; c++) node[NODE_LOW + c] = (node[c] - (sum[c] - back[c])) + (moved[c] - back[c]);
-        for (int c = 0; c < 4; c++) node[c] = sum[c];
-        /* A θ that is not finite makes the comparison fail too. */
-        real way = step[0] * step[0] + step[1] * step[1] + step[2] * step[2] + (sum[3] - sum[3]);
-        if (!(way < farthest * farthest) && !w->result->fault) w->result->fault = w->pack * PACK + lane + 1;
+    vec farthest = vec_all((real)(0.5 * s->definition.bodies[s->packs[w->pack].body].spacing));
+    for (int part = 0; part < PACK_PARTS; part++) {
+        int first = part * VEC_LANES;
+        int32_t self[VEC_LANES];
+        for (int i = 0; i < VEC_LANES; i++) self[i] = w->pack * PACK + first + i;
+        vec high[4], low[4], way = vec_all(0), area = vec_load(s->area + (int64_t)w->pack * PACK + first);
+        vec_gather4(s->node, self, NODE, high);
+        vec_gather4(s->node + NODE_LOW, self, NODE, low);
+        for (int c = 0; c < 3; c++) {
+            vec v = vec_load(s->velocity + ((int64_t)w->pack * 3 + c) * PACK + first), step = vec_select(area > 0, v * vec_all(w->way), vec_all(0));
+            vec moved = low[c] + step, sum = high[c] + moved, back = sum - high[c];
+            low[c] = (high[c] - (sum - back)) + (moved - back);
+            high[c] = sum;
+            way = way + step * step;
+        }
+        vec_scatter4(node_at(s, w->pack, first), NODE, high);
+        vec_scatter4(node_at(s, w->pack, first) + NODE_LOW, NODE, low);
+        find_fault(w, first, way + (high[3] - high[3]) < farthest * farthest);
     }
 }
 

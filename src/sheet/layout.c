@@ -5,12 +5,15 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* ---- order ------------------------------------------------------------------------------------------------------- */
+
 /* Cells begin so much before the lowest particle, in cells: those of a lattice then have no particle on their edges. */
 static const double EDGE = 0.125;
 
-/* ---- order ------------------------------------------------------------------------------------------------------- */
+enum { CELL = 2, CELL_BITS = 20 }; /* of 2 × 2 quarters; cells along an axis */
 
-/* Particles are ordered by cells of two spacings along a Morton curve: a pack is a patch of about 4 × 4, and neighbours lie near in memory. */
+/* Particles are ordered by cells of four spacings, row by row of them, the rows across the longest side; within a cell by its quarters. A pack is a patch
+ * of about 4 × 4, its neighbours are the packs before and after and those of the next rows, which are read as they come. */
 typedef struct ordered {
     uint64_t key;
     int32_t particle;
@@ -22,21 +25,30 @@ static int compare_ordered(const void *a, const void *b) {
     return x->particle < y->particle ? -1 : x->particle > y->particle;
 }
 
-static uint64_t spread_bits(uint64_t x) {
-    uint64_t out = 0;
-    for (int bit = 0; bit < 21; bit++) out |= (x >> bit & 1) << 3 * bit;
-    return out;
+/* Axes from the shortest side to the longest. */
+static void order_axes(const double side[3], int axis[3]) {
+    for (int c = 0; c < 3; c++) {
+        int rank = 0;
+        for (int other = 0; other < 3; other++) rank += side[other] < side[c] || (side[other] == side[c] && other < c);
+        axis[rank] = c;
+    }
 }
 
 static void order_body(const sheet *s, const sheet_body *b, ordered *order) {
-    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, size = 2 * b->spacing;
+    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, side[3] = {0}, quarter = 2 * b->spacing;
     const double *rest = s->definition.rest;
+    int axis[3];
     for (int64_t i = b->first; i < b->first + b->count; i++)
         for (int c = 0; c < 3; c++) low[c] = fmin(low[c], rest[3 * i + c]);
+    for (int64_t i = b->first; i < b->first + b->count; i++)
+        for (int c = 0; c < 3; c++) side[c] = fmax(side[c], rest[3 * i + c] - low[c]);
+    order_axes(side, axis);
     for (int64_t i = 0; i < b->count; i++) {
         order[i] = (ordered){.particle = (int32_t)(b->first + i)};
-        for (int c = 0; c < 3; c++)
-            order[i].key |= spread_bits((uint64_t)fmin((rest[3 * (b->first + i) + c] - low[c]) / size + EDGE, 0x1fffff)) << c;
+        for (int c = 0; c < 3; c++) {
+            double at = fmin((rest[3 * (b->first + i) + axis[c]] - low[axis[c]]) / quarter + EDGE, (CELL << CELL_BITS) - 1);
+            order[i].key |= (uint64_t)at / CELL << (3 + CELL_BITS * c) | (uint64_t)at % CELL << c;
+        }
     }
     qsort(order, (size_t)b->count, sizeof *order, compare_ordered);
 }

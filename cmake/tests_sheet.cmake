@@ -5,3 +5,6 @@ endforeach()
 
 add_test(NAME sheet_scenes COMMAND python3 ${CMAKE_SOURCE_DIR}/tests/cases/test_sheet_scenes.py $<TARGET_FILE:sunder> ${CMAKE_SOURCE_DIR})
 set_tests_properties(sheet_scenes PROPERTIES LABELS long TIMEOUT 600)
+
+add_test(NAME both_kinds COMMAND python3 ${CMAKE_SOURCE_DIR}/tests/cases/test_both_kinds.py $<TARGET_FILE:sunder> ${CMAKE_SOURCE_DIR})
+set_tests_properties(both_kinds PROPERTIES TIMEOUT 300)

@@ -64,4 +64,7 @@ int cli_add_setting(cli_scene_options *o, const char *name, const char *text);
 /* Reads a whole number within [low, high]. Returns 0, or 2 with a message. */
 int cli_number(const char *name, const char *option, const char *text, long low, long high, long *value);
 
+/* What `check` and `explain` say of a scene with both kinds. */
+#define NOTE_NO_CONTACT "sheets and solids share time, gravity, grips and colliders, but pass through one another: they do not touch"
+
 #endif

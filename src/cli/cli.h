@@ -36,7 +36,7 @@ void cli_print_end(struct session *s, FILE *out);
 
 /* What `bench sheet` was asked for. */
 typedef struct sheet_bench_matrix {
-    bool json;
+    bool json, lammps; /* lammps: beside it */
     const long *sizes;
     const int *threads, *precisions;
     int size_count, thread_count, precision_count, repeat;

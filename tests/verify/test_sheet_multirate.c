@@ -38,9 +38,9 @@ static sheet_rates rates_of(const patch *p) {
 
 static void what_a_sheet_of_several_steps_keeps(void) {
     patch *p = wet_sheet(true, ACROSS, ROWS);
-    p->d.cfl = 0.5;
+    p->d.cfl = 0.3; /* what symplectic Euler keeps differs from the energy by the square of the step: by more where waves have become short */
     CHECK(patch_start(p, 64, "auto", 1));
-    double dt = 0.5 * patch_limit(p), mean[2] = {0}, scale = 0;
+    double dt = 0.3 * patch_limit(p), mean[2] = {0}, scale = 0;
     sheet_measures start = patch_measure(p);
     for (int64_t i = 0; i < p->d.count; i++) scale += start.mass / (double)p->d.count * fabs(p->velocity[i][0]);
     int64_t steps = 20000;

@@ -243,8 +243,9 @@ static status step(sheet *s, double time, double dt, sheet_fault *fault, report 
     return reduce_results(s, dt, fault, r);
 }
 
-static void surround(sheet *s, const double gravity[3]) {
+static void surround(sheet *s, const double gravity[3], double cfl) {
     memcpy(s->definition.gravity, gravity, sizeof s->definition.gravity);
+    s->definition.cfl = cfl;
 }
 
 static status refresh(sheet *s, report *r) {

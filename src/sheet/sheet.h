@@ -149,7 +149,7 @@ typedef struct sheet_engine {
     /* Lists what runs within a step for effects in `mask`, in order. Returns how many; text has room for `limit` names. */
     int (*stages)(uint32_t mask, char (*text)[48], int limit);
     void (*feed)(sheet *s, const sheet_feed *feeds);      /* [source_count], between steps */
-    void (*surround)(sheet *s, const double gravity[3]); /* what acts on everything; between steps */
+    void (*surround)(sheet *s, const double gravity[3], double cfl); /* the definition's, anew; between steps */
     /* A knob was turned: values in the definition's materials changed. Between frames. Histories keep their values. */
     status (*refresh)(sheet *s, report *r);
     double (*bytes_per_particle)(const sheet *s);

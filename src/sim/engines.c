@@ -187,7 +187,7 @@ status engine_refresh(simulation *s, report *r) {
     sheet_feed feeds[SHEET_SOURCES];
     list_feeds(s->scene, feeds);
     s->sheets->feed(s->sheet, feeds);
-    s->sheets->surround(s->sheet, g);
+    s->sheets->surround(s->sheet, g, s->scene->cfl);
     return s->sheets->refresh(s->sheet, r);
 }
 

@@ -170,15 +170,15 @@ static scene *multirate_sheets(void) {
 
 /* A bar and a sheet in one scene. */
 static scene *both_kinds(void) {
-    scene *s = sheet_scene("linear"), *solid = explicit_damage();
-    s->materials[1] = solid->materials[0];
+    scene *s = sheet_scene("linear"), *from = explicit_damage();
+    s->materials[1] = from->materials[0];
     s->material_count = 2;
-    s->bodies[0] = solid->bodies[0];
+    s->bodies[0] = from->bodies[0];
     s->bodies[0].shape = bar(s->memory);
     s->bodies[0].material = 1;
     s->body_count = 1;
     s->particles = 600;
-    scene_destroy(solid);
+    scene_destroy(from);
     return s;
 }
 

@@ -331,4 +331,28 @@ SIMD_INLINE void vec_gather4(const real *base, const int32_t *index, int stride,
 #undef GATHER_ROW
 }
 
+/* The way back for VEC_LANES rows that follow one another: component c of lane i goes to base[i · stride + c]. */
+SIMD_INLINE void vec_scatter4(real *base, int stride, const vec in[4]) {
+#if SUNDER_SIMD > 0 && SUNDER_PRECISION == 32
+#if SUNDER_SIMD == 2
+#define SCATTER_OP(name) _mm512_##name
+    typedef __m512 row_vec;
+#else
+#define SCATTER_OP(name) _mm256_##name
+    typedef __m256 row_vec;
+#endif
+    row_vec low01 = SCATTER_OP(unpacklo_ps)(in[0], in[1]), low23 = SCATTER_OP(unpacklo_ps)(in[2], in[3]);
+    row_vec high01 = SCATTER_OP(unpackhi_ps)(in[0], in[1]), high23 = SCATTER_OP(unpackhi_ps)(in[2], in[3]);
+    /* row k holds lanes k, k + 4, … */
+    const row_vec row[4] = {SCATTER_OP(shuffle_ps)(low01, low23, 0x44), SCATTER_OP(shuffle_ps)(low01, low23, 0xee),
+                            SCATTER_OP(shuffle_ps)(high01, high23, 0x44), SCATTER_OP(shuffle_ps)(high01, high23, 0xee)};
+#undef SCATTER_OP
+    for (int k = 0; k < 4; k++)
+        for (int part = 0; part < VEC_LANES / 4; part++) memcpy(base + (int64_t)(4 * part + k) * stride, (const real *)&row[k] + 4 * part, 4 * sizeof(real));
+#else
+    for (int i = 0; i < VEC_LANES; i++)
+        for (int c = 0; c < 4; c++) base[(int64_t)i * stride + c] = in[c][i];
+#endif
+}
+
 #endif

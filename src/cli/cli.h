@@ -36,7 +36,7 @@ void cli_print_end(struct session *s, FILE *out);
 
 /* What `bench sheet` was asked for. */
 typedef struct sheet_bench_matrix {
-    bool json;
+    bool json, lammps; /* lammps: beside it */
     const long *sizes;
     const int *threads, *precisions;
     int size_count, thread_count, precision_count, repeat;
@@ -63,5 +63,8 @@ int cli_add_setting(cli_scene_options *o, const char *name, const char *text);
 
 /* Reads a whole number within [low, high]. Returns 0, or 2 with a message. */
 int cli_number(const char *name, const char *option, const char *text, long low, long high, long *value);
+
+/* What `check` and `explain` say of a scene with both kinds. */
+#define NOTE_NO_CONTACT "sheets and solids share time, gravity, grips and colliders, but pass through one another: they do not touch"
 
 #endif

@@ -18,7 +18,7 @@ static const double BUDGET = 540; /* seconds of the default matrix: the contract
 
 typedef struct bench_request {
     bench_options options; /* what all rows share */
-    bool json, full, sheet;
+    bool json, full, sheet, lammps;
     const char *csv;
     int case_count, size_count, thread_count, precision_count;
     const bench_case *cases[CHOICES];
@@ -46,6 +46,7 @@ static const struct option long_options[] = {
     {"json", no_argument, NULL, 'j'},         {"csv", required_argument, NULL, 'v'},       {"full", no_argument, NULL, 'f'},
     {"case", required_argument, NULL, 'c'},   {"particles", required_argument, NULL, 'n'}, {"threads", required_argument, NULL, 't'},
     {"precision", required_argument, NULL, 'p'}, {"seconds", required_argument, NULL, 's'}, {"repeat", required_argument, NULL, 'r'},
+    {"against", required_argument, NULL, 'a'},
     {NULL, 0, NULL, 0},
 };
 
@@ -97,6 +98,9 @@ static int parse_option(bench_request *q, int option) {
             return cli_usage("bench", "--precision %s: expected f32 or f64", optarg);
         q->precisions[0] = optarg[1] == '3' ? 32 : 64, q->precision_count = 1;
         break;
+    case 'a':
+        q->lammps = strcmp(optarg, "lammps") == 0;
+        return q->lammps ? 0 : cli_usage("bench", "--against %s: expected lammps", optarg);
     case 's': return parse_seconds(q, optarg);
     case 'r':
         code = cli_number("bench", "--repeat", optarg, 1, BENCH_REPEATS, &value);
@@ -134,6 +138,7 @@ static int parse(bench_request *q, int count, char **arguments) {
     q->sheet = strcmp(arguments[optind], "sheet") == 0;
     if (!q->sheet && strcmp(arguments[optind], "step") != 0) return cli_usage("bench", "%s: expected step, sheet, or table1 as its first argument", arguments[optind]);
     if (q->sheet && (q->case_count || q->csv)) return cli_usage("bench", "sheet: --case and --csv belong to step");
+    if (!q->sheet && q->lammps) return cli_usage("bench", "step: --against belongs to sheet");
     complete(q);
     return 0;
 }
@@ -358,7 +363,7 @@ int command_bench(int count, char **arguments) {
     int code = parse(&q, count, arguments);
     if (code) return code;
     if (q.sheet)
-        return command_bench_sheet(&(sheet_bench_matrix){.json = q.json, .sizes = q.sizes, .threads = q.threads, .precisions = q.precisions,
+        return command_bench_sheet(&(sheet_bench_matrix){.json = q.json, .lammps = q.lammps, .sizes = q.sizes, .threads = q.threads, .precisions = q.precisions,
                                                          .size_count = q.size_count, .thread_count = q.thread_count,
                                                          .precision_count = q.precision_count, .repeat = q.options.repeat, .seconds = q.options.seconds});
     FILE *out = q.json ? stderr : stdout;

@@ -1,4 +1,5 @@
 /* sunder bench sheet: bonds a second and core, at 8 and 28 neighbours. */
+#include "cli/bench_against.h"
 #include "cli/cli.h"
 
 #include "base/json.h"
@@ -77,7 +78,45 @@ static status json_machine(json_writer *w, report *r) {
     return STATUS_OK;
 }
 
-static int print_json(const sheet_row *rows, int count) {
+/* LAMMPS on the sheet of a size and number of neighbours. */
+typedef struct against_row {
+    int neighbours;
+    against_result result;
+} against_row;
+
+static double against_rate(const against_result *m) {
+    return (double)m->bonds * (double)m->steps / m->seconds;
+}
+
+/* Beside it, our fastest row of the same sheet on one thread with bonds alone. */
+static void print_against(const against_row *row, const sheet_row *rows, int count, FILE *out) {
+    const against_result *m = &row->result;
+    fprintf(out, "lammps   %3d f64  1 thr %8lld particles  %8.1f M bonds/s  peri/pmb, %s", row->neighbours, (long long)m->particles, 1e-6 * against_rate(m), m->version);
+    for (int i = 0; i < count; i++) {
+        const sheet_bench_options *o = &rows[i].options;
+        if (o->tearing || o->threads != 1 || o->neighbours != row->neighbours || rows[i].result.particles != m->particles) continue;
+        fprintf(out, "; f%d is %.1f times as fast", o->precision, bond_rate(&rows[i]) / against_rate(m));
+    }
+    fputc('\n', out);
+    fflush(out);
+}
+
+static void json_against(json_writer *w, const against_row *row) {
+    const against_result *m = &row->result;
+    json_object(w);
+    json_member_string(w, "program", m->version);
+    json_member_string(w, "case", "peri/pmb");
+    json_member_string(w, "precision", "f64");
+    json_member_integer(w, "threads", 1);
+    json_member_integer(w, "particles", m->particles);
+    json_member_integer(w, "neighbours", row->neighbours);
+    json_member_integer(w, "bonds", m->bonds);
+    json_member_integer(w, "steps", m->steps);
+    json_member_number(w, "bond_steps_per_s", against_rate(m));
+    json_object_end(w);
+}
+
+static int print_json(const sheet_row *rows, int count, const against_row *others, int other_count) {
     json_writer w;
     report r;
     json_begin(&w, 2);
@@ -88,6 +127,10 @@ static int print_json(const sheet_row *rows, int count) {
     json_array(&w);
     for (int i = 0; i < count; i++) json_row(&w, &rows[i]);
     json_array_end(&w);
+    json_key(&w, "against");
+    json_array(&w);
+    for (int i = 0; i < other_count; i++) json_against(&w, &others[i]);
+    json_array_end(&w);
     json_object_end(&w);
     if (code == STATUS_OK) code = json_finish(&w, &r);
     if (code == STATUS_OK) puts(w.text);
@@ -97,14 +140,16 @@ static int print_json(const sheet_row *rows, int count) {
 
 int command_bench_sheet(const sheet_bench_matrix *q) {
     static sheet_row rows[ROWS];
-    int count = 0;
+    static against_row others[ROWS];
+    report r;
+    int count = 0, other_count = 0;
+    if (q->lammps && lammps_find(&r) != STATUS_OK) return cli_fail(&r);
     for (int size = 0; size < q->size_count; size++)
         for (int neighbours = 8; neighbours <= 28; neighbours += 20)
             for (int tearing = 0; tearing < 2; tearing++)
                 for (int p = 0; p < q->precision_count; p++)
                     for (int t = 0; t < q->thread_count && count < ROWS; t++) {
                         sheet_row *row = &rows[count];
-                        report r;
                         row->options = (sheet_bench_options){.tearing = tearing != 0, .neighbours = neighbours, .precision = q->precisions[p],
                                                              .threads = q->threads[t], .particles = q->sizes[size], .simd = "auto",
                                                              .seconds = q->seconds, .repeat = q->repeat};
@@ -112,5 +157,12 @@ int command_bench_sheet(const sheet_bench_matrix *q) {
                         print_row(row, q->json ? stderr : stdout);
                         count++;
                     }
-    return q->json ? print_json(rows, count) : 0;
+    for (int size = 0; size < q->size_count && q->lammps; size++)
+        for (int neighbours = 8; neighbours <= 28; neighbours += 20) {
+            against_row *other = &others[other_count++];
+            other->neighbours = neighbours;
+            if (lammps_sheet(q->sizes[size], neighbours, q->seconds, &other->result, &r) != STATUS_OK) return cli_fail(&r);
+            print_against(other, rows, count, q->json ? stderr : stdout);
+        }
+    return q->json ? print_json(rows, count, others, other_count) : 0;
 }

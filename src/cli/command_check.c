@@ -8,7 +8,13 @@
 static const struct option long_options[] = {
     {"set", required_argument, NULL, 's'}, {"recipe", required_argument, NULL, 'r'}, {"json", no_argument, NULL, 'j'}, {NULL, 0, NULL, 0}};
 
-static void print_json(const script_reports *reports) {
+/* What is no error, but may not be what was meant. */
+static const char *find_note(script *s) {
+    const scene *from = s ? script_scene(s) : NULL;
+    return from && from->body_count > 0 && from->sheet_count > 0 ? NOTE_NO_CONTACT : NULL;
+}
+
+static void print_json(const script_reports *reports, const char *note) {
     json_writer w;
     report r;
     json_begin(&w, 2);
@@ -32,6 +38,10 @@ static void print_json(const script_reports *reports) {
         json_member_string(&w, "message", text);
         json_object_end(&w);
     }
+    json_array_end(&w);
+    json_key(&w, "notes");
+    json_array(&w);
+    if (note) json_string(&w, note);
     json_array_end(&w);
     json_object_end(&w);
     if (json_finish(&w, &r) == STATUS_OK) puts(w.text);
@@ -57,8 +67,9 @@ int command_check(int count, char **arguments) {
     options.setting_count = o.setting_count;
     script *s = NULL;
     status result = script_load(arguments[optind], &options, &s, &reports);
-    if (json) print_json(&reports);
-    else if (result == STATUS_OK) printf("%s: ok\n", arguments[optind]);
+    const char *note = result == STATUS_OK ? find_note(s) : NULL;
+    if (json) print_json(&reports, note);
+    else if (result == STATUS_OK) printf("%s: ok\n%s%s%s", arguments[optind], note ? "note: " : "", note ? note : "", note ? "\n" : "");
     else (void)cli_fail_script(&reports);
     if (s) script_close(s);
     return status_exit_code(result);

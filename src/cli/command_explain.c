@@ -13,7 +13,40 @@ static const struct option long_options[] = {
     {"set", required_argument, NULL, 's'},     {"recipe", required_argument, NULL, 'r'}, {"json", no_argument, NULL, 'j'},
     {"precision", required_argument, NULL, 'p'}, {"threads", required_argument, NULL, 't'}, {NULL, 0, NULL, 0}};
 
-static void print_text(const simulation_plan *p, const scene *s, const simulation_cost *c) {
+/* How the steps just taken were divided, where the scene asks for that; false: it does not. */
+static bool find_rates(const simulation *s, sheet_rates *out) {
+    int count;
+    sheet *state;
+    const sheet_engine *engine = simulation_sheet_engine(s, &state);
+    const effect *const *effects = effect_catalogue(&count);
+    for (int e = 0; e < count && engine; e++)
+        if (effects[e]->engine == ENGINE_SHEET && strcmp(effects[e]->name, "multirate") == 0 && (simulation_get_plan(s)->mask >> e & 1)) {
+            engine->rates(state, out);
+            return true;
+        }
+    return false;
+}
+
+/* Of the bond updates that one short step for all would take. */
+static double rate_share(const sheet_rates *rates) {
+    double parts = 0, particles = 0;
+    for (int l = 0; l < rates->levels; l++) {
+        particles += (double)rates->particles[l];
+        parts += (double)rates->particles[l] * ldexp(1, l);
+    }
+    return parts / (particles * ldexp(1, rates->levels - 1));
+}
+
+static void print_rates(const simulation *s) {
+    sheet_rates rates;
+    if (!find_rates(s, &rates)) return;
+    printf("    multirate      ");
+    for (int l = 0; l < rates.levels; l++) printf("%s%lld particles by 1/%d", l ? ", " : "", (long long)rates.particles[l], 1 << l);
+    printf(" of a step: %.0f %% of the updates of one short step\n", 100 * rate_share(&rates));
+}
+
+static void print_text(const simulation *state, const scene *s, const simulation_cost *c) {
+    const simulation_plan *p = simulation_get_plan(state);
     printf("%s\n\n", s->title[0] ? s->title : s->file);
     printf("  particles  %lld  spacing %.4g  dx %.4g  f%d %s, %d threads\n", (long long)p->particles, p->spacing, p->dx, p->precision,
            p->simd, p->threads);
@@ -27,8 +60,9 @@ static void print_text(const simulation_plan *p, const scene *s, const simulatio
     for (int b = 0; b < s->sheet_count; b++) {
         char text[160];
         shape_describe(s->sheets[b].region.shape, text, sizeof text);
-        printf("%ssheet of %s, %s, thickness %.4g\n", b ? "             " : "", text, s->materials[s->sheets[b].material].name, s->sheets[b].thickness);
+        printf("%ssheet of %s, %s, thickness %.4g\n", b + s->body_count ? "             " : "", text, s->materials[s->sheets[b].material].name, s->sheets[b].thickness);
     }
+    if (p->solid && p->sheet) printf("             %s\n", NOTE_NO_CONTACT);
     puts("\n  effects");
     for (int e = 0; e < p->effect_count; e++)
         if (simulation_concerns(p, e)) printf("    %-3s %-14s %s\n", p->mask >> e & 1 ? "on" : "off", p->effects[e]->name, p->effects[e]->doc);
@@ -39,6 +73,7 @@ static void print_text(const simulation_plan *p, const scene *s, const simulatio
     for (int e = 0; e < p->effect_count; e++)
         if (isfinite(p->limits[e])) printf("    %-14s %.4g\n", p->effects[e]->name, p->limits[e]);
     printf("    dt             %.4g%s\n", p->dt, s->dt > 0 ? " (fixed by the scene)" : "");
+    print_rates(state);
     printf("\n  cost       %lld frames, about %.0f steps of %.2f ms: %.0f s\n", (long long)scene_frames(s), c->steps, 1e3 * c->seconds_per_step,
            c->seconds);
 }
@@ -51,7 +86,24 @@ static void json_names(json_writer *w, const char *key, const simulation_plan *p
     json_array_end(w);
 }
 
-static void print_json(const simulation_plan *p, const scene *s, const simulation_cost *c) {
+static void json_rates(json_writer *w, const simulation *s) {
+    sheet_rates rates;
+    json_key(w, "multirate");
+    if (!find_rates(s, &rates)) {
+        json_null(w);
+        return;
+    }
+    json_object(w);
+    json_key(w, "particles_by_level");
+    json_array(w);
+    for (int l = 0; l < rates.levels; l++) json_integer(w, rates.particles[l]);
+    json_array_end(w);
+    json_member_number(w, "share_of_updates", rate_share(&rates));
+    json_object_end(w);
+}
+
+static void print_json(const simulation *state, const scene *s, const simulation_cost *c) {
+    const simulation_plan *p = simulation_get_plan(state);
     json_writer w;
     report r;
     json_begin(&w, 2);
@@ -83,6 +135,7 @@ static void print_json(const simulation_plan *p, const scene *s, const simulatio
         if (isfinite(p->limits[e])) json_member_number(&w, p->effects[e]->name, p->limits[e]);
     json_object_end(&w);
     json_member_number(&w, "dt", p->dt);
+    json_rates(&w, state);
     json_member_number(&w, "dx", p->dx);
     json_member_integer(&w, "particles", p->particles);
     json_member_integer(&w, "tetrahedra", p->tetrahedra);
@@ -102,7 +155,7 @@ static int explain(const char *path, const script_options *options, const simula
     simulation_cost c = {0};
     status code = simulation_create(script_scene(s), engine, &simulation_state, &r);
     if (code == STATUS_OK) code = simulation_measure_cost(simulation_state, script_scene(s), 0.5, &c, &r);
-    if (code == STATUS_OK) (json ? print_json : print_text)(simulation_get_plan(simulation_state), script_scene(s), &c);
+    if (code == STATUS_OK) (json ? print_json : print_text)(simulation_state, script_scene(s), &c);
     int exit_code = code == STATUS_OK ? 0 : cli_fail(&r);
     simulation_destroy(simulation_state);
     script_close(s);

@@ -70,17 +70,21 @@ static void free_floats(float *values, const record *item) {
     if (values) memory_free(values, (size_t)item->count * (size_t)item->components * sizeof *values);
 }
 
-static const record *find_position(const record_list *records) {
-    const record *position = record_find(records, "solid/position");
-    return position ? position : record_find(records, "sheet/position");
+enum { SETS = 2 };
+static const char *const sets[SETS] = {"solid", "sheet"};
+
+static const record *find_field(const record_list *records, int set, const char *field) {
+    char name[RECORD_NAME];
+    snprintf(name, sizeof name, "%s/%s", sets[set], field);
+    return record_find(records, name);
 }
 
-/* What a picture shows unless it is told: damage, what diffuses, broken bonds. */
-static const record *find_colour(const record_list *records) {
-    static const char *const names[] = {"solid/damage", "sheet/diffused", "sheet/broken"};
-    const record *found = NULL;
-    for (int i = 0; i < 3 && !found; i++) found = record_find(records, names[i]);
-    return found;
+/* What a set's particles show unless one is told: damage, what diffuses, broken bonds. Told, a field of either set. */
+static const record *find_colour(const record_list *records, int set, const char *colour) {
+    static const char *const names[SETS][2] = {{"damage", "damage"}, {"diffused", "broken"}};
+    if (colour) return strncmp(colour, sets[set], strlen(sets[set])) == 0 ? record_find(records, colour) : NULL;
+    const record *found = find_field(records, set, names[set][0]);
+    return found ? found : find_field(records, set, names[set][1]);
 }
 
 /* A quantity without a natural range is shown over its largest value. */
@@ -92,14 +96,16 @@ static void scale_colour(float *value, int64_t count) {
 
 /* Widens the box by a frame's particles. */
 static void widen(const record_list *records, float low[3], float high[3]) {
-    const record *position = find_position(records);
-    float *points = as_floats(position), here_low[3], here_high[3];
-    if (points && view_bounds(points, position->count, here_low, here_high) > 0)
-        for (int c = 0; c < 3; c++) {
-            low[c] = fminf(low[c], here_low[c]);
-            high[c] = fmaxf(high[c], here_high[c]);
-        }
-    free_floats(points, position);
+    for (int set = 0; set < SETS; set++) {
+        const record *position = find_field(records, set, "position");
+        float *points = as_floats(position), here_low[3], here_high[3];
+        if (points && view_bounds(points, position->count, here_low, here_high) > 0)
+            for (int c = 0; c < 3; c++) {
+                low[c] = fminf(low[c], here_low[c]);
+                high[c] = fmaxf(high[c], here_high[c]);
+            }
+        free_floats(points, position);
+    }
 }
 
 /* The camera holds the first frame and the one that is drawn: what has not moved stays in its place from picture to picture. */
@@ -119,20 +125,58 @@ static status fit_camera(const char *folder, int64_t frame, view_camera *camera,
     return STATUS_OK;
 }
 
-static status draw(const render_options *o, const record_list *records, view_render_options *look, report *r) {
-    const record *position = find_position(records);
-    const record *value = o->colour ? record_find(records, o->colour) : find_colour(records);
-    if (o->colour && (!value || value->components != 1))
-        return report_input(r, NULL, 0, "--colour", "a field of the frame with one component, such as solid/damage or sheet/diffused", o->colour, NULL);
+/* Points and colours of all sets, solids first; particles of a set without the colour are 0. */
+typedef struct point_cloud {
+    int64_t count;
+    float *points; // [count][3]
+    float *values; // [count]
+    bool coloured;
+} point_cloud;
+
+static void free_cloud(point_cloud *cloud) {
+    memory_free(cloud->points, (size_t)cloud->count * 3 * sizeof *cloud->points);
+    memory_free(cloud->values, (size_t)cloud->count * sizeof *cloud->values);
+}
+
+static bool add_set(const record_list *records, int set, const char *colour, int64_t first, point_cloud *cloud) {
+    const record *position = find_field(records, set, "position"), *value = find_colour(records, set, colour);
+    if (!position) return true;
     float *points = as_floats(position), *values = as_floats(value);
+    if (points) memcpy(cloud->points + 3 * first, points, (size_t)position->count * 3 * sizeof *points);
     if (values && strcmp(value->name, "sheet/diffused") == 0) scale_colour(values, value->count);
-    size_t bytes = (size_t)look->width * (size_t)look->height * 3;
-    uint8_t *rgb = memory_allocate(bytes);
-    status code = points && rgb ? STATUS_OK : report_set(r, STATUS_SYSTEM, "out of memory for the picture, or a frame without particles");
-    if (code == STATUS_OK) code = view_render_points(points, values, position->count, look, rgb, r);
-    if (code == STATUS_OK) code = view_write_png(o->out, rgb, look->width, look->height, r);
+    if (values) memcpy(cloud->values + first, values, (size_t)value->count * sizeof *values);
+    cloud->coloured |= values != NULL;
+    bool good = points != NULL;
     free_floats(points, position);
     free_floats(values, value);
+    return good;
+}
+
+static status gather_cloud(const record_list *records, const char *colour, point_cloud *cloud, report *r) {
+    const record *wanted = colour ? record_find(records, colour) : NULL;
+    if (colour && (!wanted || wanted->components != 1))
+        return report_input(r, NULL, 0, "--colour", "a field of the frame with one component, such as solid/damage or sheet/diffused", colour, NULL);
+    int64_t first[SETS];
+    for (int set = 0; set < SETS; set++) {
+        const record *position = find_field(records, set, "position");
+        first[set] = cloud->count;
+        cloud->count += position ? position->count : 0;
+    }
+    cloud->points = memory_allocate_array((size_t)cloud->count, 3 * sizeof *cloud->points);
+    cloud->values = memory_allocate_array((size_t)cloud->count, sizeof *cloud->values);
+    bool good = cloud->count > 0 && cloud->points && cloud->values;
+    for (int set = 0; set < SETS && good; set++) good = add_set(records, set, colour, first[set], cloud);
+    return good ? STATUS_OK : report_set(r, STATUS_SYSTEM, "out of memory for the picture, or a frame without particles");
+}
+
+static status draw(const render_options *o, const record_list *records, view_render_options *look, report *r) {
+    point_cloud cloud = {0};
+    size_t bytes = (size_t)look->width * (size_t)look->height * 3;
+    uint8_t *rgb = memory_allocate(bytes);
+    status code = rgb ? gather_cloud(records, o->colour, &cloud, r) : report_set(r, STATUS_SYSTEM, "out of memory for the picture");
+    if (code == STATUS_OK) code = view_render_points(cloud.points, cloud.coloured ? cloud.values : NULL, cloud.count, look, rgb, r);
+    if (code == STATUS_OK) code = view_write_png(o->out, rgb, look->width, look->height, r);
+    free_cloud(&cloud);
     memory_free(rgb, bytes);
     return code;
 }

@@ -109,8 +109,9 @@ status turns_begin(session *s, report *r);
 status turns_resume(session *s, const char *folder, int64_t through, int64_t first, int64_t checkpoint, const record_list *saved, report *r);
 /* The turns that have acted, as a record of a checkpoint. */
 status turns_save(const session *s, record_list *list, report *r);
+/* Before the session's thread starts: at which frame a turn by hand may act. */
+void turns_start(session *s);
 /* Lets everything act that is due between this frame and the next. */
-void turns_start(session *s); /* before the first frame of this session */
 status turns_act(session *s, report *r);
 void turns_free(session *s);
 

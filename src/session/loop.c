@@ -174,7 +174,6 @@ static bool may_go_on(session *s) {
 
 static status run_frames(session *s, report *r) {
     bool resumed = s->options.resume != NULL;
-    turns_start(s);
     status code = settle_frame(s, 0, !resumed, r);
     while (code == STATUS_OK && simulation_frame(s->simulation) < s->target) {
         if (!may_go_on(s))

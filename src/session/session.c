@@ -269,6 +269,7 @@ status session_start(const session_options *options, session **out, script_repor
     status code = prepare(s, reports);
     if (code == STATUS_OK) {
         publish_start(s);
+        turns_start(s);
         if (pthread_create(&s->thread, NULL, session_loop, s) != 0) {
             reports->count = 1;
             code = report_set(&reports->items[0], STATUS_SYSTEM, "no thread for the simulation");

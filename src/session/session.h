@@ -140,7 +140,8 @@ int session_turns(session *s, knob_turn *out, int limit);
 /* Frames whose checkpoints are there, ascending; from any thread. Returns how many there are. */
 int session_checkpoints(session *s, int64_t *frames, int limit);
 
-/* Writes a material as it now is to a Lua file that loads as a recipe and resolves to the same values. A file that is there is replaced.
+/* Writes a material as it now is to a Lua file that loads as a recipe and resolves to the same values (by its name where recipes are looked for: in
+ * recipes/ beside a scene or above it, or in $SUNDER_RECIPES). A file that is there is replaced.
  * Errors: no such material, a path that cannot be written. */
 status session_save_recipe(session *s, int material, const char *path, report *r);
 

@@ -223,7 +223,9 @@ static void tell_turn(session *s, const knob_turn *turn, const char *before) {
 
 void turns_start(session *s) {
     pthread_mutex_lock(&s->knobs.lock);
-    s->knobs.passed = simulation_frame(s->simulation) - 1;
+    int64_t first = simulation_frame(s->simulation);
+    if (first < s->past_until) first = s->past_until; /* a branch's past is its parent's */
+    s->knobs.passed = first - 1;
     pthread_mutex_unlock(&s->knobs.lock);
 }
 
@@ -259,9 +261,9 @@ status turns_act(session *s, report *r) {
     session_knobs_state *k = &s->knobs;
     int64_t frame = simulation_frame(s->simulation);
     pthread_mutex_lock(&k->lock);
-    k->passed = frame;
-    bool by_hand = k->queued > 0;
-    status code = take_queue(k, frame, r);
+    bool by_hand = k->queued > 0 && frame > k->passed;
+    if (frame > k->passed) k->passed = frame;
+    status code = by_hand ? take_queue(k, frame, r) : STATUS_OK;
     bool due = k->acted < k->count && k->turns[k->acted].frame <= frame;
     pthread_mutex_unlock(&k->lock);
     if (code != STATUS_OK || !due) return code;

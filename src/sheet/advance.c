@@ -6,27 +6,60 @@
 
 typedef struct pack_context {
     sheet *state;
-    real dt;
+    double dt;
+    int first_level; /* levels that are due: this and above; −1: all packs take one step */
+    int32_t count;
     void (*stage)(const pack_work *w);
 } pack_context;
+
+static void visit_pack(const pack_context *c, int32_t p, group_result *result) {
+    sheet *s = c->state;
+    pack_work w = {.state = s, .pack = p, .body = &s->bodies[s->packs[p].body], .dt = (real)c->dt, .way = (real)c->dt, .due = true,
+                   .stiffening = &result->stiffening, .result = result};
+    c->stage(&w);
+}
+
+/* Steps of a pack's level and of its reach; within the level's, only its bonds to faster packs are due. */
+static void visit_due_pack(const pack_context *c, int32_t p, group_result *result) {
+    sheet *s = c->state;
+    pack_rates *t = s->rates;
+    int level = t->level[p];
+    bool due = level >= c->first_level;
+    pack_work w = {.state = s, .pack = p, .body = &s->bodies[s->packs[p].body], .dt = (real)ldexp(c->dt, -level), .way = (real)ldexp(c->dt, -t->reach[p]),
+                   .due = due, .sifted = t->reach[p] > level, .share = {due ? 1 : 0, (real)0.5}, .stiffening = &t->stiffening[p], .result = result};
+    c->stage(&w);
+}
 
 static void visit_group(void *context, int64_t group, int worker) {
     (void)worker;
     const pack_context *c = context;
     sheet *s = c->state;
     int32_t last = (int32_t)(group + 1) * GROUP_PACKS;
-    for (int32_t p = (int32_t)group * GROUP_PACKS; p < last && p < s->pack_count; p++) {
-        pack_work w = {.state = s, .pack = p, .body = &s->bodies[s->packs[p].body], .dt = c->dt, .result = &s->results[group]};
-        c->stage(&w);
+    for (int32_t k = (int32_t)group * GROUP_PACKS; k < last && k < c->count; k++) {
+        if (c->first_level < 0) visit_pack(c, k, &s->results[group]);
+        else visit_due_pack(c, s->rates->order[k], &s->results[group]);
     }
 }
 
 void sheet_for_packs(sheet *s, real dt, void (*stage)(const pack_work *w)) {
-    pack_context c = {s, dt, stage};
+    pack_context c = {.state = s, .dt = (double)dt, .first_level = -1, .count = s->pack_count, .stage = stage};
     parallel_for(s->threads, s->group_count, 4, visit_group, &c);
 }
 
-void sheet_break_bonds(sheet *s, int64_t first, unsigned lanes, group_result *result) {
+void sheet_for_due(sheet *s, double dt, int part, void (*stage)(const pack_work *w)) {
+    const pack_rates *t = s->rates;
+    if (!t) {
+        sheet_for_packs(s, (real)dt, stage);
+        return;
+    }
+    int level = part == 0 ? 0 : t->finest - __builtin_ctz((unsigned)part);
+    pack_context c = {.state = s, .dt = dt, .first_level = level, .count = t->active[level], .stage = stage};
+    parallel_for(s->threads, (c.count + GROUP_PACKS - 1) / GROUP_PACKS, 4, visit_group, &c);
+}
+
+void sheet_break_bonds(const pack_work *w, int64_t first, unsigned lanes) {
+    sheet *s = w->state;
+    if (s->rates) s->rates->cracked[w->pack] = s->rates->step;
     for (int i = 0; i < VEC_LANES; i++) {
         if (!(lanes >> i & 1)) continue;
         s->stiffness[first + i] = 0;
@@ -34,7 +67,7 @@ void sheet_break_bonds(sheet *s, int64_t first, unsigned lanes, group_result *re
         if (s->conduct) s->conduct[first + i] = 0;
         if (s->dilation) s->dilation[first + i] = 0;
         if (s->laplace) s->laplace[first + i] = 0;
-        result->broken++;
+        w->result->broken++;
     }
 }
 
@@ -128,27 +161,38 @@ static void collide(const pack_work *w) {
 
 /* ---- positions --------------------------------------------------------------------------------------------------- */
 
-/* high + low + step, with high the rounded sum: the error of the addition is kept (Knuth's two-sum). Four at a time: θ moves by nothing. */
+/* Where a lane has run away, or its θ is not finite, the comparison fails. */
+static void find_fault(const pack_work *w, int first, vec_mask good) {
+    unsigned bad = 0;
+    for (int i = 0; i < VEC_LANES; i++) bad |= (unsigned)(good[i] == 0) << i;
+    if (bad && !w->result->fault) w->result->fault = w->pack * PACK + first + __builtin_ctz(bad) + 1;
+}
+
+/* high + low + step, with high the rounded sum: the error of the addition is kept (Knuth's two-sum). Padding, which has no area, stays. */
 static void move(const pack_work *w) {
     sheet *s = w->state;
-    real farthest = (real)(0.5 * s->definition.bodies[s->packs[w->pack].body].spacing);
-    const real *v = s->velocity + (int64_t)w->pack * 3 * PACK;
-    for (int lane = 0; lane < s->packs[w->pack].count; lane++) {
-        real *restrict node = node_at(s, w->pack, lane);
-        const real step[4] = {w->dt * v[lane], w->dt * v[PACK + lane], w->dt * v[2 * PACK + lane], 0};
-        real moved[4], sum[4], back[4];
-        for (int c = 0; c < 4; c++) moved[c] = node[NODE_LOW + c] + step[c];
-        for (int c = 0; c < 4; c++) sum[c] = node[c] + moved[c];
-        for (int c = 0; c < 4; c++) back[c] = sum[c] - node[c];
-        for (int c = 0; c < 4; c++) node[NODE_LOW + c] = (node[c] - (sum[c] - back[c])) + (moved[c] - back[c]);
-        for (int c = 0; c < 4; c++) node[c] = sum[c];
-        /* A θ that is not finite makes the comparison fail too. */
-        real way = step[0] * step[0] + step[1] * step[1] + step[2] * step[2] + (sum[3] - sum[3]);
-        if (!(way < farthest * farthest) && !w->result->fault) w->result->fault = w->pack * PACK + lane + 1;
+    vec farthest = vec_all((real)(0.5 * s->definition.bodies[s->packs[w->pack].body].spacing));
+    for (int part = 0; part < PACK_PARTS; part++) {
+        int first = part * VEC_LANES;
+        int32_t self[VEC_LANES];
+        for (int i = 0; i < VEC_LANES; i++) self[i] = w->pack * PACK + first + i;
+        vec high[4], low[4], way = vec_all(0), area = vec_load(s->area + (int64_t)w->pack * PACK + first);
+        vec_gather4(s->node, self, NODE, high);
+        vec_gather4(s->node + NODE_LOW, self, NODE, low);
+        for (int c = 0; c < 3; c++) {
+            vec v = vec_load(s->velocity + ((int64_t)w->pack * 3 + c) * PACK + first), step = vec_select(area > 0, v * vec_all(w->way), vec_all(0));
+            vec moved = low[c] + step, sum = high[c] + moved, back = sum - high[c];
+            low[c] = (high[c] - (sum - back)) + (moved - back);
+            high[c] = sum;
+            way = way + step * step;
+        }
+        vec_scatter4(node_at(s, w->pack, first), NODE, high);
+        vec_scatter4(node_at(s, w->pack, first) + NODE_LOW, NODE, low);
+        find_fault(w, first, way + (high[3] - high[3]) < farthest * farthest);
     }
 }
 
-static void advance_pack(const pack_work *w) {
+static void change_velocities(const pack_work *w) {
     sheet *s = w->state;
     for (int c = 0; c < 3; c++) {
         real *v = s->velocity + ((int64_t)w->pack * 3 + c) * PACK, step = (real)s->definition.gravity[c] * w->dt;
@@ -156,13 +200,17 @@ static void advance_pack(const pack_work *w) {
     }
     for (int e = 0; e < SHEET_EFFECTS; e++)
         if ((s->mask >> e & 1) && sheet_effect_table[e]->sheet->velocity) sheet_effect_table[e]->sheet->velocity(w);
-    if (s->definition.boundary_count) {
+}
+
+static void advance_pack(const pack_work *w) {
+    if (w->due) change_velocities(w);
+    if (w->state->definition.boundary_count) {
         move_held(w);
         collide(w);
     }
     move(w);
 }
 
-void sheet_advance(sheet *s, real dt) {
-    sheet_for_packs(s, dt, advance_pack);
+void sheet_advance(sheet *s, double dt, int part) {
+    sheet_for_due(s, dt, part, advance_pack);
 }

@@ -234,7 +234,8 @@ static void calibrate_body(const sheet_definition *d, const sheet_plan *p, int b
             if (n->conduct) diffusion += n->conduct[k];
             if (n->laplace) laplace += n->laplace[k];
         }
-        n->momentum_bound = fmax(n->momentum_bound, momentum * state_bound(p));
+        n->pace[i] = momentum * state_bound(p);
+        n->momentum_bound = fmax(n->momentum_bound, n->pace[i]);
         n->diffusion_bound = fmax(n->diffusion_bound, diffusion);
         n->bending_bound = fmax(n->bending_bound, laplace * sqrt(p->bending / (d->materials[b->material].density * b->thickness)));
     }

@@ -67,8 +67,9 @@ static status build(sheet *s, bool first, report *r) {
         s->momentum_bound = n.momentum_bound;
         s->diffusion_bound = n.diffusion_bound;
         s->bending_bound = n.bending_bound;
-        if (first) code = sheet_layout(s, &n, r);
-        else sheet_fill_bonds(s, &n);
+        code = first ? sheet_layout(s, &n, r) : sheet_refill(s, &n, r);
+        if (first && code == STATUS_OK && (s->mask >> SHEET_EFFECT_multirate & 1)) code = sheet_rates_create(s, r);
+        if (code == STATUS_OK && s->rates) sheet_rates_load(s, &n);
         make_constants(s);
     }
     network_free(&n);
@@ -85,6 +86,7 @@ static bool state_based(const sheet *s) {
 static void dilate(const pack_work *w) {
     sheet *s = w->state;
     const sheet_pack *pack = &s->packs[w->pack];
+    if (!(w->body->flags & BOND_STATE)) return;
     for (int part = 0; part < PACK_PARTS; part++) {
         int first = part * VEC_LANES;
         int32_t self[VEC_LANES];
@@ -114,10 +116,15 @@ static void pull(const pack_work *w) {
 
 /* ---- life -------------------------------------------------------------------------------------------------------- */
 
-static void destroy(sheet *s) {
-    if (!s) return;
+static void release_effects(sheet *s) {
     for (int e = 0; e < SHEET_EFFECTS; e++)
         if (sheet_effect_table[e]->sheet->release) sheet_effect_table[e]->sheet->release(s);
+}
+
+static void destroy(sheet *s) {
+    if (!s) return;
+    release_effects(s);
+    sheet_rates_free(s);
     sheet_layout_free(s);
     memory_free(s, sizeof *s);
 }
@@ -155,7 +162,7 @@ static rigid_boundary *boundaries(sheet *s) {
 
 static void limits(const sheet *s, double *limit) {
     for (int e = 0; e < SHEET_EFFECTS; e++) limit[e] = HUGE_VAL;
-    double momentum = 1 / sqrt(s->momentum_bound * s->stiffening);
+    double momentum = s->rates ? sheet_rates_limit(s) : 1 / sqrt(s->momentum_bound * s->stiffening);
     for (int e = 0; e < SHEET_EFFECTS; e++)
         if ((s->mask >> e & 1) && sheet_effect_table[e]->sheet->bonds) limit[e] = momentum;
     if (s->bending_bound > 0) limit[SHEET_EFFECT_bending] = 1 / s->bending_bound;
@@ -198,33 +205,51 @@ static status reduce_results(sheet *s, double dt, sheet_fault *fault, report *r)
     return STATUS_OK;
 }
 
+/* Bonds and places, in as many parts as the fastest packs ask for. Boundaries move from part to part; who drives them moves them by the whole step. */
+static void parts(sheet *s, double dt) {
+    int count = s->rates ? 1 << s->rates->finest : 1;
+    rigid_motion motions[SHEET_BOUNDARIES];
+    for (int b = 0; b < s->definition.boundary_count; b++) motions[b] = s->definition.boundaries[b].motion;
+    for (int part = 0; part < count; part++) {
+        double t0 = now();
+        if (state_based(s)) sheet_for_due(s, dt, part, dilate);
+        sheet_for_due(s, dt, part, pull);
+        double t1 = now();
+        sheet_advance(s, dt, part);
+        s->seconds[SHEET_PHASE_BONDS] += t1 - t0;
+        s->seconds[SHEET_PHASE_ADVANCE] += now() - t1;
+        s->bond_updates += PACK * (s->rates ? s->rates->active_slots[part == 0 ? 0 : s->rates->finest - __builtin_ctz((unsigned)part)] : s->slot_count);
+        for (int b = 0; b < s->definition.boundary_count && part + 1 < count; b++)
+            if (motions[b].active) rigid_motion_advance(&s->definition.boundaries[b].motion, dt / count);
+    }
+    for (int b = 0; b < s->definition.boundary_count; b++) s->definition.boundaries[b].motion = motions[b];
+}
+
 static status step(sheet *s, double time, double dt, sheet_fault *fault, report *r) {
     double t0 = now();
     sheet_take_hold(s);
     reset_results(s);
+    if (s->rates) sheet_rates_choose(s, dt);
     for (int e = 0; e < SHEET_EFFECTS; e++)
         if ((s->mask >> e & 1) && sheet_effect_table[e]->sheet->before && sheet_effect_table[e]->sheet->before(s, (real)dt, r) != STATUS_OK)
             return r->code;
     double t1 = now();
-    if (state_based(s)) sheet_for_packs(s, (real)dt, dilate);
-    sheet_for_packs(s, (real)dt, pull);
-    double t2 = now();
-    sheet_advance(s, (real)dt);
+    s->seconds[SHEET_PHASE_CONTACT] += t1 - t0;
+    parts(s, dt);
     double t3 = now();
     for (int e = 0; e < SHEET_EFFECTS; e++)
         if ((s->mask >> e & 1) && sheet_effect_table[e]->sheet->after) sheet_effect_table[e]->sheet->after(s, time + dt, dt);
-    s->seconds[SHEET_PHASE_CONTACT] += t1 - t0;
-    s->seconds[SHEET_PHASE_BONDS] += t2 - t1;
-    s->seconds[SHEET_PHASE_ADVANCE] += t3 - t2;
     s->seconds[SHEET_PHASE_DIFFUSION] += now() - t3;
     return reduce_results(s, dt, fault, r);
 }
 
-static void surround(sheet *s, const double gravity[3]) {
+static void surround(sheet *s, const double gravity[3], double cfl) {
     memcpy(s->definition.gravity, gravity, sizeof s->definition.gravity);
+    s->definition.cfl = cfl;
 }
 
 static status refresh(sheet *s, report *r) {
+    release_effects(s); /* lists that were made for other values */
     return build(s, false, r);
 }
 
@@ -278,5 +303,5 @@ const sheet_engine sheet_engine_table = {
     .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .step = step, .settle = sheet_diffuse,
     .measure = sheet_measure, .read = sheet_read, .components = components, .bonds = sheet_bonds, .calibration = calibration,
     .save = sheet_save, .restore = sheet_restore, .stages = stage_names, .feed = feed, .surround = surround, .refresh = refresh,
-    .bytes_per_particle = bytes_per_particle, .phases = phases,
+    .bytes_per_particle = bytes_per_particle, .rates = sheet_rates_report, .levels = sheet_rates_levels, .phases = phases,
 };

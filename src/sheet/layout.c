@@ -7,7 +7,13 @@
 
 /* ---- order ------------------------------------------------------------------------------------------------------- */
 
-/* Particles of scattered sets are ordered by cells along a Morton curve, so that neighbours lie near in memory; lattices come in rows. */
+/* Cells begin so much before the lowest particle, in cells: those of a lattice then have no particle on their edges. */
+static const double EDGE = 0.125;
+
+enum { CELL = 2, CELL_BITS = 20 }; /* of 2 × 2 quarters; cells along an axis */
+
+/* Particles are ordered by cells of four spacings, row by row of them, the rows across the longest side; within a cell by its quarters. A pack is a patch
+ * of about 4 × 4, its neighbours are the packs before and after and those of the next rows, which are read as they come. */
 typedef struct ordered {
     uint64_t key;
     int32_t particle;
@@ -19,23 +25,32 @@ static int compare_ordered(const void *a, const void *b) {
     return x->particle < y->particle ? -1 : x->particle > y->particle;
 }
 
-static uint64_t spread_bits(uint64_t x) {
-    uint64_t out = 0;
-    for (int bit = 0; bit < 21; bit++) out |= (x >> bit & 1) << 3 * bit;
-    return out;
+/* Axes from the shortest side to the longest. */
+static void order_axes(const double side[3], int axis[3]) {
+    for (int c = 0; c < 3; c++) {
+        int rank = 0;
+        for (int other = 0; other < 3; other++) rank += side[other] < side[c] || (side[other] == side[c] && other < c);
+        axis[rank] = c;
+    }
 }
 
 static void order_body(const sheet *s, const sheet_body *b, ordered *order) {
-    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, size = 2 * b->spacing;
+    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, side[3] = {0}, quarter = 2 * b->spacing;
     const double *rest = s->definition.rest;
+    int axis[3];
     for (int64_t i = b->first; i < b->first + b->count; i++)
         for (int c = 0; c < 3; c++) low[c] = fmin(low[c], rest[3 * i + c]);
+    for (int64_t i = b->first; i < b->first + b->count; i++)
+        for (int c = 0; c < 3; c++) side[c] = fmax(side[c], rest[3 * i + c] - low[c]);
+    order_axes(side, axis);
     for (int64_t i = 0; i < b->count; i++) {
         order[i] = (ordered){.particle = (int32_t)(b->first + i)};
-        for (int c = 0; c < 3 && b->lattice == SHEET_SCATTERED; c++)
-            order[i].key |= spread_bits((uint64_t)fmin((rest[3 * (b->first + i) + c] - low[c]) / size, 0x1fffff)) << c;
+        for (int c = 0; c < 3; c++) {
+            double at = fmin((rest[3 * (b->first + i) + axis[c]] - low[axis[c]]) / quarter + EDGE, (CELL << CELL_BITS) - 1);
+            order[i].key |= (uint64_t)at / CELL << (3 + CELL_BITS * c) | (uint64_t)at % CELL << c;
+        }
     }
-    if (b->lattice == SHEET_SCATTERED) qsort(order, (size_t)b->count, sizeof *order, compare_ordered);
+    qsort(order, (size_t)b->count, sizeof *order, compare_ordered);
 }
 
 /* ---- particles --------------------------------------------------------------------------------------------------- */
@@ -113,34 +128,32 @@ static void load_bond(sheet *s, const sheet_network *n, int64_t at, int64_t k) {
     if (s->limit) s->limit[at] = (real)n->limit[k];
     if (s->history && broken) s->history[at] = BROKEN;
     if (s->conduct) s->conduct[at] = broken ? 0 : (real)n->conduct[k];
-    if (s->laplace) s->laplace[at] = broken ? 0 : (real)n->laplace[k];
-    if (s->coupling) {
+    if (s->laplace) s->laplace[at] = broken || !n->laplace ? 0 : (real)n->laplace[k];
+    if (s->coupling && n->coupling) {
         s->coupling[at] = (real)n->coupling[k];
         s->dilation[at] = broken ? 0 : (real)n->dilation[k];
     }
 }
 
-/* Curvature is known where all bonds are left and lie evenly: Σ laplace r⁰ = 0. There `whole` is Σ laplace, as the loop adds it. */
+/* Curvature is known where bonds lie evenly, Σ laplace r⁰ = 0, and as long as all of them are left: `whole` is Σ laplace, as the loop adds it. */
 static void mark_whole(sheet *s, const sheet_network *n, int32_t p, int lane) {
     int64_t i = s->id[(int64_t)p * PACK + lane];
     real *whole = &s->whole[(int64_t)p * PACK + lane];
     double moment[3] = {0}, scale = 0;
     real sum = 0;
     *whole = -1;
-    if (i < 0) return;
+    if (i < 0 || !n->laplace) return;
     const double *rest = s->definition.rest;
     for (int64_t k = n->start[i]; k < n->start[i + 1]; k++) {
         for (int c = 0; c < 3; c++) moment[c] += n->laplace[k] * (rest[3 * n->neighbour[k] + c] - rest[3 * i + c]);
         scale += n->laplace[k] * n->length[k];
     }
-    for (int32_t k = 0; k < s->packs[p].slots; k++) {
-        real laplace = s->laplace[((int64_t)s->packs[p].first_slot + k) * PACK + lane];
-        sum += laplace;
-    }
+    for (int64_t k = n->start[i]; k < n->start[i + 1]; k++)
+        if (n->weight[k] > 0) sum += (real)n->laplace[k];
     if (fabs(moment[0]) + fabs(moment[1]) + fabs(moment[2]) < 1e-6 * scale) *whole = sum;
 }
 
-void sheet_fill_bonds(sheet *s, const sheet_network *n) {
+static void fill_bonds(sheet *s, const sheet_network *n) {
     for (int32_t p = 0; p < s->pack_count; p++)
         for (int lane = 0; lane < PACK; lane++) {
             int64_t at = (int64_t)s->packs[p].first_slot * PACK + lane, i = s->id[(int64_t)p * PACK + lane];
@@ -200,7 +213,7 @@ static void list_arrays(sheet *s, const sheet_network *n, array_row rows[ARRAYS]
 
 static status allocate_rows(array_row *rows, int from, int to, report *r) {
     for (int i = from; i < to; i++) {
-        if (!rows[i].wanted) continue;
+        if (!rows[i].wanted || *rows[i].array) continue;
         *rows[i].array = memory_allocate_array(rows[i].count, rows[i].size);
         if (!*rows[i].array) return report_set(r, STATUS_SYSTEM, "out of memory for a sheet's particles and bonds");
     }
@@ -219,7 +232,15 @@ status sheet_layout(sheet *s, const sheet_network *n, report *r) {
     if (code != STATUS_OK) return code;
     list_arrays(s, n, rows);
     code = allocate_rows(rows, BOND_ROWS, ARRAYS, r);
-    if (code == STATUS_OK) sheet_fill_bonds(s, n);
+    if (code == STATUS_OK) fill_bonds(s, n);
+    return code;
+}
+
+status sheet_refill(sheet *s, const sheet_network *n, report *r) {
+    array_row rows[ARRAYS];
+    list_arrays(s, n, rows);
+    status code = allocate_rows(rows, 0, ARRAYS, r); /* what a knob has turned on */
+    if (code == STATUS_OK) fill_bonds(s, n);
     return code;
 }
 

@@ -207,7 +207,8 @@ status network_build(const sheet_definition *d, const sheet_plan *plans, sheet_n
     n->start = memory_allocate_array((size_t)d->count + 1, sizeof *n->start);
     n->body = memory_allocate_array((size_t)d->count, 1);
     n->sum = memory_allocate_array((size_t)d->count, sizeof *n->sum);
-    status code = n->start && n->body && n->sum ? STATUS_OK : report_set(r, STATUS_SYSTEM, "out of memory for the bonds of a sheet");
+    n->pace = memory_allocate_array((size_t)d->count, sizeof *n->pace);
+    status code = n->start && n->body && n->sum && n->pace ? STATUS_OK : report_set(r, STATUS_SYSTEM, "out of memory for the bonds of a sheet");
     for (int b = 0; b < d->body_count && code == STATUS_OK; b++) code = find_body(d, b, n, true, r);
     for (int64_t i = 0; i < d->count && code == STATUS_OK; i++) n->start[i + 1] += n->start[i];
     n->bond_count = code == STATUS_OK ? n->start[d->count] : 0;
@@ -223,6 +224,7 @@ void network_free(sheet_network *n) {
     memory_free(n->start, ((size_t)n->count + 1) * sizeof *n->start);
     memory_free(n->body, (size_t)n->count);
     memory_free(n->sum, (size_t)n->count * sizeof *n->sum);
+    memory_free(n->pace, (size_t)n->count * sizeof *n->pace);
     memory_free(n->neighbour, m * sizeof *n->neighbour);
     memory_free(n->cut, m);
     double *const arrays[] = {n->length, n->weight, n->stiffness, n->limit, n->conduct, n->coupling, n->dilation, n->laplace};

@@ -22,7 +22,8 @@ typedef struct sheet_network {
     double *dilation;       // [bond_count], 2 W A_j / w_i²
     double *laplace;        // [bond_count], Σ laplace (x_j − x_i) is the Laplacian; NULL: nothing resists bending
     double *sum;            // [count], w_i = Σ W A_j
-    double momentum_bound;  /* largest Σ c W A_j / (2 ρ h r²): Δt ≤ 1/√ of it */
+    double *pace;           // [count], Σ c W A_j / (2 ρ h r²): Δt ≤ 1/√ of it
+    double momentum_bound;  /* the largest pace */
     double bending_bound;   /* largest (Σ laplace) √(B/ρh): Δt ≤ 1/it */
     double diffusion_bound; /* largest Σ κ W A_j / (ρ C r²): Δt ≤ 1/it */
     sheet_calibration calibration[SHEET_BODIES];

@@ -32,6 +32,8 @@ typedef struct sheet_plan {
     double grain_stiffness, grain_toughness; /* 1: none */
     double bending, damping, drag, wind[3];
     double contact_distance, contact_stiffness; /* in spacings, in units of E h; 0: none */
+    bool multirate;
+    int levels, cracking, heated; /* how often a step is halved at most; and once more where bonds break, where θ acts */
 } sheet_plan;
 
 #define PARAMETER_PLAIN(key_, unit_, doc_, least, most, value)                                                         \

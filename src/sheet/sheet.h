@@ -13,6 +13,8 @@
 #include <stdint.h>
 
 enum { SHEET_MATERIALS = 16, SHEET_BODIES = 32, SHEET_BOUNDARIES = 64, SHEET_SOURCES = 64, SHEET_NOTCHES = 64 };
+/* A step is divided by 2^l, l < SHEET_LEVELS, where the effect multirate asks for it. */
+enum { SHEET_LEVELS = 8 };
 enum { SHEET_PHASE_BONDS, SHEET_PHASE_DIFFUSION, SHEET_PHASE_CONTACT, SHEET_PHASE_ADVANCE, SHEET_PHASES };
 
 /* The `provides` of the effects that are laws of a bond, and the `needs` of those that build on one. */
@@ -60,6 +62,7 @@ typedef struct sheet_feed {
 typedef struct sheet_definition {
     int threads;
     double gravity[3];
+    double cfl; /* share of its own limit that each pack of particles may step by, where steps are divided; 0: all of it */
     uint32_t effect_mask; /* effects that any body uses, by index in the effect list */
     int material_count, body_count, boundary_count, notch_count, source_count;
     sheet_material materials[SHEET_MATERIALS];
@@ -100,6 +103,13 @@ typedef struct sheet_calibration {
     int neighbours;          /* of an interior particle, with weight > 0 */
 } sheet_calibration;
 
+/* How the last step was divided, and what it has cost. */
+typedef struct sheet_rates {
+    int levels;                       /* 1: one step for all */
+    int64_t particles[SHEET_LEVELS];  /* that take steps of 2^−l */
+    int64_t bond_updates;             /* evaluations of a bond's force since the engine was made, bonds counted from both ends */
+} sheet_rates;
+
 typedef struct sheet sheet;
 
 /* What stopped a step. */
@@ -139,10 +149,13 @@ typedef struct sheet_engine {
     /* Lists what runs within a step for effects in `mask`, in order. Returns how many; text has room for `limit` names. */
     int (*stages)(uint32_t mask, char (*text)[48], int limit);
     void (*feed)(sheet *s, const sheet_feed *feeds);      /* [source_count], between steps */
-    void (*surround)(sheet *s, const double gravity[3]); /* what acts on everything; between steps */
+    void (*surround)(sheet *s, const double gravity[3], double cfl); /* the definition's, anew; between steps */
     /* A knob was turned: values in the definition's materials changed. Between frames. Histories keep their values. */
     status (*refresh)(sheet *s, report *r);
     double (*bytes_per_particle)(const sheet *s);
+    void (*rates)(const sheet *s, sheet_rates *out);
+    /* The level of each particle in the last step, in order of id: out[count]. */
+    void (*levels)(const sheet *s, uint8_t *out);
     void (*phases)(const sheet *s, double seconds[SHEET_PHASES]);
 } sheet_engine;
 

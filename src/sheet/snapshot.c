@@ -13,10 +13,11 @@ typedef struct saved_array {
     int components;
 } saved_array;
 
-enum { SAVED = 8 };
+enum { SAVED = 14 };
 
 static int list_saved(const sheet *s, saved_array rows[SAVED]) {
     int64_t lanes = (int64_t)s->pack_count * PACK;
+    pack_rates *t = s->rates;
     const saved_array all[SAVED] = {
         {"sheet/node", s->node, real_type, lanes, NODE},
         {"sheet/velocity", s->velocity, real_type, s->pack_count, 3 * PACK},
@@ -26,6 +27,12 @@ static int list_saved(const sheet *s, saved_array rows[SAVED]) {
         {"sheet/conduct", s->conduct, real_type, s->slot_count, PACK},
         {"sheet/dilation", s->dilation, real_type, s->slot_count, PACK},
         {"sheet/laplace", s->laplace, real_type, s->slot_count, PACK},
+        {"sheet/rates/step", t ? &t->step : NULL, RECORD_I32, 1, 1},
+        {"sheet/rates/asked", t ? t->asked : NULL, RECORD_U8, s->pack_count, 1},
+        {"sheet/rates/cracked", t ? t->cracked : NULL, RECORD_I32, s->pack_count, 1},
+        {"sheet/rates/coldest", t ? t->coldest : NULL, real_type, s->pack_count, 1},
+        {"sheet/rates/hottest", t ? t->hottest : NULL, real_type, s->pack_count, 1},
+        {"sheet/rates/stiffening", t ? t->stiffening : NULL, real_type, s->pack_count, 1},
     };
     int count = 0;
     for (int i = 0; i < SAVED; i++)

@@ -52,6 +52,26 @@ typedef struct body_constants {
     double dilation_modulus;      /* Λ */
 } body_constants;
 
+/* How packs' steps are divided (rates.c; METHOD.md §6). A pack of level l takes steps of 2^−l of a step, a bond those of its faster end, and its
+ * ends are then where they are at that time: a pack moves by steps of its `reach`, the highest level of the packs that its bonds reach. */
+typedef struct pack_rates {
+    int32_t pack_count;
+    double *pace;        // [pack_count], largest of its particles at rest
+    real *stiffening;    // [pack_count], in the last step
+    real *coldest, *hottest; // [pack_count], smallest and largest θ̄ of its bonds
+    int32_t *cracked;    // [pack_count], the step after which a bond last broke + 1; 0: none has
+    uint8_t *asked;      // [pack_count], the level that a pack asks for itself
+    uint8_t *level, *reach; // [pack_count]
+    int32_t *order;      // [pack_count], by falling reach
+    int32_t active[SHEET_LEVELS + 1];       /* packs of a reach of at least l */
+    int64_t active_slots[SHEET_LEVELS + 1]; /* and their slots */
+    int64_t *near_start; // [pack_count + 1]
+    int32_t *near;       // packs that a pack's bonds reach, ascending
+    int32_t step;
+    int finest;          /* the highest level of the step at hand */
+    bool uniform[SHEET_BODIES]; /* bodies that take one step throughout */
+} pack_rates;
+
 /* Results of a group of packs, reduced in order. */
 typedef struct group_result {
     real stiffening; /* largest stiffness of a bond over c */
@@ -68,6 +88,7 @@ struct sheet {
     uint32_t mask;
     int threads;
     double momentum_bound, diffusion_bound, bending_bound, contact_bound; /* of the state at rest */
+    pack_rates *rates; /* NULL: one step for all */
     struct contact_list *contacts; /* effects/self_contact.c; NULL unless it is on */
     int64_t broken_since;  /* bonds broken since contacts were last listed */
     double stiffening;
@@ -99,6 +120,7 @@ struct sheet {
     double *weight_sum;   // [pack_count][PACK], w; NULL unless state-based
 
     sheet_feed feeds[SHEET_SOURCES];
+    int64_t bond_updates;
     double diffused_until; /* the time that θ has been brought to */
     group_result *results; // [group_count]
     double grip_work, grip_impulse[3];
@@ -110,7 +132,12 @@ typedef struct pack_work {
     sheet *state;
     int32_t pack;
     const body_constants *body;
-    real dt;
+    real dt;         /* the step of its level */
+    real way;        /* and of its reach, by which it moves */
+    bool due;        /* whether a step of its level begins; else only bonds to faster packs are evaluated */
+    bool sifted;     /* whether some bonds reach faster packs */
+    real share[2];   /* of dt that acts now on bonds of its own level, and on those to faster packs */
+    real *stiffening;
     group_result *result;
 } pack_work;
 
@@ -148,17 +175,32 @@ SIMD_INLINE double coordinate_of(const real *node, int c) {
     return (double)node[c] + (double)node[NODE_LOW + c];
 }
 
-/* layout.c: orders particles, fills all arrays from a calibrated network; the bonds alone when a knob was turned. */
+/* layout.c: orders particles, fills all arrays from a calibrated network; the bonds alone when a knob was turned. Errors: out of memory. */
 status sheet_layout(sheet *s, const sheet_network *n, report *r);
-void sheet_fill_bonds(sheet *s, const sheet_network *n);
+status sheet_refill(sheet *s, const sheet_network *n, report *r);
 void sheet_layout_free(sheet *s);
 /* advance.c */
 void sheet_take_hold(sheet *s);
-void sheet_advance(sheet *s, real dt);
+/* Moves the packs that are due at a part of a step. */
+void sheet_advance(sheet *s, double dt, int part);
 /* Breaks the bonds of `lanes` (a bit each) in a slot. */
-void sheet_break_bonds(sheet *s, int64_t first, unsigned lanes, group_result *result);
+void sheet_break_bonds(const pack_work *w, int64_t first, unsigned lanes);
 /* Calls a stage for all packs. */
 void sheet_for_packs(sheet *s, real dt, void (*stage)(const pack_work *w));
+/* Calls a stage for the packs that are due at a part of a step: all in part 0, then those whose own or whose neighbours' smaller steps begin. */
+void sheet_for_due(sheet *s, double dt, int part, void (*stage)(const pack_work *w));
+/* rates.c. Errors: out of memory. */
+status sheet_rates_create(sheet *s, report *r);
+void sheet_rates_load(sheet *s, const sheet_network *n);
+void sheet_rates_free(sheet *s);
+/* The longest step at which no pack's part of it exceeds its own limit. */
+double sheet_rates_limit(const sheet *s);
+/* θ has changed. */
+void sheet_rates_feel(sheet *s);
+/* Gives packs their levels for a step of dt. */
+void sheet_rates_choose(sheet *s, double dt);
+void sheet_rates_report(const sheet *s, sheet_rates *out);
+void sheet_rates_levels(const sheet *s, uint8_t *out);
 /* effects/diffusion.c: brings θ to `time`. */
 void sheet_diffuse(sheet *s, double time);
 /* measure.c, snapshot.c */

@@ -11,7 +11,7 @@
 /* A pack's own places, and what they gather. */
 typedef struct own_place {
     vec high[4], low[4], dilatation;
-    vec acceleration[3], stiffening;
+    vec acceleration[3], stiffening, left;
 } own_place;
 
 SIMD_INLINE unsigned lanes_of(vec_mask mask) {
@@ -25,6 +25,15 @@ SIMD_INLINE vec limit_factor(const body_constants *b, vec theta, vec stiffness_l
     vec stretch = vec_max(1 - b->stretch_loss * theta, vec_all(b->floor));
     if (!b->toughness_softens) return stretch;
     return stretch * vec_sqrt(vec_max(1 - b->toughness_loss * theta, vec_all(b->floor)) / stiffness_left);
+}
+
+/* What acts now of the bonds to these neighbours: those to faster packs are evaluated at the faster pace. */
+SIMD_INLINE vec shares_of(const pack_work *w, const int32_t *index) {
+    const uint8_t *level = w->state->rates->level;
+    uint8_t own = level[w->pack];
+    real lanes[VEC_LANES];
+    for (int i = 0; i < VEC_LANES; i++) lanes[i] = w->share[level[index[i] / PACK] > own];
+    return vec_load(lanes);
 }
 
 /* Adds one slot's bonds. `flags` is a constant where this is inlined. */
@@ -44,11 +53,15 @@ SIMD_INLINE void add_slot(const pack_work *w, int64_t at, unsigned flags, own_pl
         theta = (own->high[3] + high[3]) * (real)0.5;
         swelling = b->alpha * theta;
         left = vec_max(1 - b->stiffness_loss * theta, vec_all(b->floor));
+        own->left = vec_max(left, own->left);
         if (!b->total) q = eta - swelling;
     }
+    if (w->sifted) stiffness = stiffness * shares_of(w, index);
     vec held = q;
     if (LAW_HOLDS) {
-        held = vec_max(q, vec_load(s->history + at));
+        vec before = vec_load(s->history + at);
+        held = vec_max(q, before);
+        if (w->sifted) held = vec_select(stiffness > 0, held, before);
         vec_store(s->history + at, held);
     }
     if (flags & BOND_FRACTURES) {
@@ -56,7 +69,7 @@ SIMD_INLINE void add_slot(const pack_work *w, int64_t at, unsigned flags, own_pl
         if (flags & BOND_FEELS_THETA) limit = limit * limit_factor(b, theta, left);
         vec_mask torn = (q > limit) & (stiffness > 0);
         if (vec_any(torn)) {
-            sheet_break_bonds(s, at, lanes_of(torn), w->result);
+            sheet_break_bonds(w, at, lanes_of(torn));
             stiffness = vec_select(torn, vec_all(0), stiffness);
         }
     }
@@ -79,7 +92,7 @@ SIMD_INLINE void sweep_pack(const pack_work *w, unsigned flags) {
         int first = part * VEC_LANES;
         int32_t self[VEC_LANES];
         for (int i = 0; i < VEC_LANES; i++) self[i] = w->pack * PACK + first + i;
-        own_place own = {.stiffening = vec_all(1)};
+        own_place own = {.stiffening = vec_all(1), .left = vec_all(1)};
         vec_gather4(s->node, self, NODE, own.high);
         vec_gather4(s->node + NODE_LOW, self, NODE, own.low);
         if (flags & BOND_STATE) own.dilatation = vec_load(s->dilatation + (int64_t)w->pack * PACK + first);
@@ -88,9 +101,10 @@ SIMD_INLINE void sweep_pack(const pack_work *w, unsigned flags) {
             real *v = s->velocity + ((int64_t)w->pack * 3 + c) * PACK + first;
             vec_store(v, vec_fma(own.acceleration[c], vec_all(w->dt), vec_load(v)));
         }
-        if (LAW_STIFFENS) {
+        if (LAW_STIFFENS || (flags & BOND_FEELS_THETA)) {
             real most = vec_largest(own.stiffening);
-            if (most > w->result->stiffening) w->result->stiffening = most;
+            if (!s->rates) most *= vec_largest(own.left); /* packs with steps of their own are asked for θ before each step */
+            if (most > *w->stiffening) *w->stiffening = most;
         }
     }
 }

@@ -4,7 +4,7 @@
 #include <time.h>
 
 bool simulation_concerns(const simulation_plan *plan, int e) {
-    return plan->effects[e]->scope == SCOPE_SCENE || (plan->effects[e]->engine == ENGINE_SHEET) == plan->sheet;
+    return plan->effects[e]->scope == SCOPE_SCENE || (plan->effects[e]->engine == ENGINE_SHEET ? plan->sheet : plan->solid);
 }
 
 status simulation_measure_cost(simulation *s, const scene *scene_data, double limit, simulation_cost *c, report *r) {

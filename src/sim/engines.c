@@ -1,4 +1,5 @@
-/* One face for both engines: a simulation has one or the other. */
+/* One face for both engines: a simulation has one, or the other, or both side by side. They share the step, gravity, grips and colliders; solids and
+ * sheets pass through one another. */
 #include "base/memory.h"
 #include "sim/internal.h"
 
@@ -7,13 +8,20 @@
 #include <string.h>
 
 rigid_boundary *engine_boundaries(const simulation *s) {
-    return s->sheet ? s->sheets->boundaries(s->sheet) : s->engine->boundaries(s->solid);
+    return s->solid ? s->engine->boundaries(s->solid) : s->sheets->boundaries(s->sheet);
+}
+
+void engine_share_boundaries(const simulation *s) {
+    if (!s->solid || !s->sheet) return;
+    const rigid_boundary *from = s->engine->boundaries(s->solid);
+    rigid_boundary *to = s->sheets->boundaries(s->sheet);
+    for (int i = 0; i < s->scene->grip_count + s->scene->collider_count; i++) to[i].motion = from[i].motion;
 }
 
 void engine_limits(const simulation *s, double limit[EFFECT_LIMIT]) {
     for (int e = 0; e < EFFECT_LIMIT; e++) limit[e] = HUGE_VAL;
+    if (s->solid) s->engine->limits(s->solid, limit);
     if (s->sheet) s->sheets->limits(s->sheet, limit + sheet_effects_first());
-    else s->engine->limits(s->solid, limit);
     /* The momentum limit shrinks by the scene's cfl; others are limits as they stand. */
     for (int e = 0; e < s->plan.effect_count; e++) {
         const effect *table = s->plan.effects[e];
@@ -24,11 +32,13 @@ void engine_limits(const simulation *s, double limit[EFFECT_LIMIT]) {
 status engine_step(simulation *s, double dt, report *r) {
     solid_fault fault;
     sheet_fault sheet_trouble;
-    return s->sheet ? s->sheets->step(s->sheet, s->time, dt, &sheet_trouble, r) : s->engine->step(s->solid, dt, &fault, r);
+    engine_share_boundaries(s);
+    status code = s->solid ? s->engine->step(s->solid, dt, &fault, r) : STATUS_OK;
+    return code == STATUS_OK && s->sheet ? s->sheets->step(s->sheet, s->time, dt, &sheet_trouble, r) : code;
 }
 
 status engine_begin_frame(simulation *s, report *r) {
-    return s->sheet ? STATUS_OK : s->engine->sort(s->solid, r);
+    return s->solid ? s->engine->sort(s->solid, r) : STATUS_OK;
 }
 
 void engine_end_frame(simulation *s) {
@@ -36,24 +46,50 @@ void engine_end_frame(simulation *s) {
 }
 
 double engine_bytes(const simulation *s) {
-    return s->sheet ? s->sheets->bytes_per_particle(s->sheet) : s->engine->bytes_per_particle(s->solid);
+    double bytes = s->solid ? s->engine->bytes_per_particle(s->solid) * (double)s->particles.count : 0;
+    if (s->sheet) bytes += s->sheets->bytes_per_particle(s->sheet) * (double)s->sheet_points.count;
+    return bytes / (double)s->count;
 }
 
 status engine_save(const simulation *s, record_list *list, report *r) {
-    return s->sheet ? s->sheets->save(s->sheet, list, r) : s->engine->save(s->solid, list, r);
+    status code = s->solid ? s->engine->save(s->solid, list, r) : STATUS_OK;
+    return code == STATUS_OK && s->sheet ? s->sheets->save(s->sheet, list, r) : code;
 }
 
 status engine_restore(simulation *s, const record_list *list, report *r) {
-    return s->sheet ? s->sheets->restore(s->sheet, list, r) : s->engine->restore(s->solid, list, r);
+    status code = s->solid ? s->engine->restore(s->solid, list, r) : STATUS_OK;
+    return code == STATUS_OK && s->sheet ? s->sheets->restore(s->sheet, list, r) : code;
 }
 
-int simulation_read(const simulation *s, const char *field, double *out) {
-    if (s->sheet) return out ? s->sheets->read(s->sheet, field, out) : s->sheets->components(s->sheet, field);
+int64_t engine_count(const simulation *s, engine_kind kind) {
+    return kind == ENGINE_SHEET ? (s->sheet ? s->sheet_points.count : 0) : s->solid ? s->particles.count : 0;
+}
+
+int engine_read(const simulation *s, engine_kind kind, const char *field, double *out) {
+    if (engine_count(s, kind) == 0) return 0;
+    if (kind == ENGINE_SHEET) return out ? s->sheets->read(s->sheet, field, out) : s->sheets->components(s->sheet, field);
     return out ? s->engine->read(s->solid, field, out) : s->engine->components(s->solid, field);
 }
 
+/* Where both are, a field that one has not is 0 there; broken bonds stand for damage, as they do in the measures. */
+static const char *counterpart(const char *field) {
+    return strcmp(field, "damage") == 0 ? "broken" : field;
+}
+
+int simulation_read(const simulation *s, const char *field, double *out) {
+    if (!s->solid || !s->sheet) return engine_read(s, s->sheet ? ENGINE_SHEET : ENGINE_SOLID, field, out);
+    int own = engine_read(s, ENGINE_SOLID, field, NULL), components = own ? own : engine_read(s, ENGINE_SHEET, field, NULL);
+    if (!out || components == 0) return components;
+    size_t solids = (size_t)(s->particles.count * components), sheets = (size_t)(s->sheet_points.count * components);
+    memset(out, 0, (solids + sheets) * sizeof *out);
+    if (own) engine_read(s, ENGINE_SOLID, field, out);
+    const char *name = engine_read(s, ENGINE_SHEET, field, NULL) ? field : counterpart(field);
+    if (engine_read(s, ENGINE_SHEET, name, NULL) == components) engine_read(s, ENGINE_SHEET, name, out + solids);
+    return components;
+}
+
 const char *simulation_picture_field(const simulation *s) {
-    if (!s->sheet) return "damage";
+    if (engine_read(s, ENGINE_SOLID, "damage", NULL) || !s->sheet) return "damage";
     return simulation_read(s, "diffused", NULL) ? "diffused" : "broken";
 }
 
@@ -69,12 +105,35 @@ static void share_measures(const sheet_measures *from, solid_measures *to) {
     to->histogram[0] = 1;
 }
 
+/* Sums, and the extremes of both; shares weigh by particles. What only solids have stays theirs. */
+static void add_measures(const solid_measures *from, double weight, solid_measures *to) {
+    to->mass += from->mass;
+    to->kinetic += from->kinetic;
+    to->elastic += from->elastic;
+    to->gravitational += from->gravitational;
+    to->grip_work += from->grip_work;
+    for (int c = 0; c < 3; c++) {
+        to->momentum[c] += from->momentum[c];
+        to->angular_momentum[c] += from->angular_momentum[c];
+        to->grip_impulse[c] += from->grip_impulse[c];
+    }
+    to->damage_mean += weight * (from->damage_mean - to->damage_mean);
+    to->broken_fraction += weight * (from->broken_fraction - to->broken_fraction);
+    to->damage_max = fmax(to->damage_max, from->damage_max);
+    to->speed_max = fmax(to->speed_max, from->speed_max);
+}
+
 status engine_measure(const simulation *s, simulation_measures *m, report *r) {
-    if (!s->sheet) return s->engine->measure(s->solid, &m->solid, r);
+    status code = s->solid ? s->engine->measure(s->solid, &m->solid, r) : STATUS_OK;
+    if (code != STATUS_OK || !s->sheet) return code;
+    solid_measures common;
     m->has_sheet = true;
-    status code = s->sheets->measure(s->sheet, &m->sheet, r);
-    if (code == STATUS_OK) share_measures(&m->sheet, &m->solid);
-    return code;
+    code = s->sheets->measure(s->sheet, &m->sheet, r);
+    if (code != STATUS_OK) return code;
+    share_measures(&m->sheet, &common);
+    if (s->solid) add_measures(&common, (double)s->sheet_points.count / (double)s->count, &m->solid);
+    else m->solid = common;
+    return STATUS_OK;
 }
 
 /* ---- making ------------------------------------------------------------------------------------------------------ */
@@ -120,16 +179,16 @@ status engine_refresh(simulation *s, report *r) {
     static const double still[3] = {0};
     const effect_values *gravity = &s->scene->effects[effect_index("gravity")], *damping = &s->scene->effects[effect_index("mass_damping")];
     const double *g = gravity->on ? gravity->value[0] : still;
-    if (s->sheet) {
-        sheet_feed feeds[SHEET_SOURCES];
-        list_feeds(s->scene, feeds);
-        s->sheets->feed(s->sheet, feeds);
-        s->sheets->surround(s->sheet, g);
-        return s->sheets->refresh(s->sheet, r);
+    if (s->solid) {
+        s->engine->surround(s->solid, g, damping->on ? damping->value[0][0] : 0);
+        s->engine->refresh(s->solid);
     }
-    s->engine->surround(s->solid, g, damping->on ? damping->value[0][0] : 0);
-    s->engine->refresh(s->solid);
-    return STATUS_OK;
+    if (!s->sheet) return STATUS_OK;
+    sheet_feed feeds[SHEET_SOURCES];
+    list_feeds(s->scene, feeds);
+    s->sheets->feed(s->sheet, feeds);
+    s->sheets->surround(s->sheet, g, s->scene->cfl);
+    return s->sheets->refresh(s->sheet, r);
 }
 
 status engine_create_sheet(simulation *s, int threads, report *r) {
@@ -141,7 +200,7 @@ status engine_create_sheet(simulation *s, int threads, report *r) {
     list_feeds(from, feeds);
     *d = (sheet_definition){.threads = threads, .effect_mask = sheet_mask(from), .material_count = from->material_count, .body_count = p->body_count,
                             .notch_count = p->notch_count, .source_count = p->source_count, .count = p->count, .rest = p->rest,
-                            .position = p->position, .velocity = p->velocity, .area = p->area, .grain = p->grain, .protected = p->protected, .feeds = feeds};
+                            .position = p->position, .velocity = p->velocity, .area = p->area, .grain = p->grain, .protected = p->protected, .feeds = feeds, .cfl = from->cfl};
     for (int m = 0; m < from->material_count; m++)
         d->materials[m] = (sheet_material){.density = from->materials[m].density, .effects = from->materials[m].effects + sheet_effects_first()};
     memcpy(d->bodies, p->bodies, sizeof p->bodies);
@@ -154,7 +213,7 @@ status engine_create_sheet(simulation *s, int threads, report *r) {
     s->sheet = s->sheets->create(d, r);
     status code = s->sheet ? STATUS_OK : r->code;
     if (code == STATUS_INPUT && !r->file[0]) snprintf(r->file, sizeof r->file, "%s", from->file);
-    if (code == STATUS_OK) s->plan.mask = d->effect_mask << sheet_effects_first();
+    if (code == STATUS_OK) s->plan.mask |= d->effect_mask << sheet_effects_first();
     memory_free(d, sizeof *d);
     return code;
 }

@@ -6,16 +6,17 @@
 #include "sim/sheets.h"
 #include "sim/simulation.h"
 
-/* A scene has solids or sheets. */
+/* A scene has solids, sheets, or both; particles of both are numbered solids first. */
 struct simulation {
     const scene *start; /* as it was given */
     scene *scene;       /* a copy of it, in which knobs are turned; engines borrow its values */
     const solid_engine *engine;
-    solid *solid; /* or, in a scene of sheets, NULL */
+    solid *solid; /* NULL in a scene of sheets alone */
     const sheet_engine *sheets;
     sheet *sheet; /* or NULL */
     sheet_particles sheet_points; /* stay: the engine borrows rest places and sources */
     int64_t count;
+    uint8_t *bodies; // [count] where a scene has both, else NULL: those of the one kind
     body_particles particles; /* rest positions and bodies stay for measures; the rest is freed after loading */
     solid_material materials[SOLID_MATERIALS];
     simulation_plan plan;
@@ -28,17 +29,22 @@ struct simulation {
     char warning[256];
 };
 
-/* engines.c: the two engines behind one face */
+/* engines.c: both engines behind one face */
 rigid_boundary *engine_boundaries(const simulation *s);
+/* Where a scene has both, the second engine's boundaries move as those do. */
+void engine_share_boundaries(const simulation *s);
 /* By index in the catalogue, the scene's cfl included. */
 void engine_limits(const simulation *s, double limit[EFFECT_LIMIT]);
 status engine_step(simulation *s, double dt, report *r);
 status engine_begin_frame(simulation *s, report *r);
 void engine_end_frame(simulation *s);
 double engine_bytes(const simulation *s);
+/* Reads a field of one kind alone, as simulation_read. */
+int engine_read(const simulation *s, engine_kind kind, const char *field, double *out);
 status engine_save(const simulation *s, record_list *list, report *r);
 status engine_restore(simulation *s, const record_list *list, report *r);
 status engine_measure(const simulation *s, simulation_measures *m, report *r);
+int64_t engine_count(const simulation *s, engine_kind kind);
 /* Knobs were turned: the engines see the scene's values again. Between frames. Errors: memory; values that a sheet's bonds cannot have. */
 status engine_refresh(simulation *s, report *r);
 int engine_define_boundaries(const scene *s, rigid_boundary *out);

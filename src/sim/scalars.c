@@ -37,8 +37,11 @@ static void derive_speed(const simulation *s, const double *v, const double *non
 
 static void derive_displacement(const simulation *s, const double *x, const double *none, int64_t count, double *out) {
     (void)none;
-    const double *rest = s->sheet ? s->sheet_points.rest : s->particles.position;
-    for (int64_t i = 0; i < count; i++) out[i] = length_of((double[3]){x[3 * i] - rest[3 * i], x[3 * i + 1] - rest[3 * i + 1], x[3 * i + 2] - rest[3 * i + 2]});
+    int64_t solids = engine_count(s, ENGINE_SOLID);
+    for (int64_t i = 0; i < count; i++) {
+        const double *rest = i < solids ? s->particles.position + 3 * i : s->sheet_points.rest + 3 * (i - solids);
+        out[i] = length_of((double[3]){x[3 * i] - rest[0], x[3 * i + 1] - rest[1], x[3 * i + 2] - rest[2]});
+    }
 }
 
 static void derive_body(const simulation *s, const double *none, const double *neither, int64_t count, double *out) {

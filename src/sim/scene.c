@@ -279,13 +279,11 @@ status scene_check_material(scene *s, int material, report *r) {
 
 status scene_validate(scene *s, report *r) {
     if (s->body_count + s->sheet_count == 0) return report_input(r, s->file, 0, "solids", "at least one body", "none", NULL);
-    if (s->body_count > 0 && s->sheet_count > 0)
-        return report_input(r, s->file, 0, "sheets", "solids or sheets: they cannot touch one another yet, so one scene holds one kind", "both", NULL);
     status code = check_numbers(s, r);
     for (int i = 0; i < s->material_count && code == STATUS_OK; i++) code = check_material(s, i, &s->materials[i], r);
     for (int i = 0; i < s->body_count && code == STATUS_OK; i++) code = check_body(s, &s->bodies[i], r);
     for (int i = 0; i < s->sheet_count && code == STATUS_OK; i++) code = check_sheet(s, &s->sheets[i], r);
-    if (code == STATUS_OK && s->sheet_count > 0 && s->effects[effect_index("mass_damping")].on)
+    if (code == STATUS_OK && s->body_count == 0 && s->effects[effect_index("mass_damping")].on)
         code = report_input(r, s->file, 0, "mass_damping", "damping = … in the sheet's material", "mass_damping, which is for solids", NULL);
     if (code != STATUS_OK) return code;
     s->effects[effect_index("boundary")].on = s->grip_count + s->collider_count > 0;

@@ -72,13 +72,15 @@ static void make_plan(simulation *s, uint32_t mask, int threads) {
     p->particles = s->count;
     p->tetrahedra = s->particles.element_count;
     p->threads = threads;
-    p->spacing = s->sheet ? s->sheet_points.spacing : s->particles.spacing;
-    p->dx = s->sheet ? s->sheet_points.spacing : s->particles.dx;
+    p->sheet_particles = engine_count(s, ENGINE_SHEET);
+    p->spacing = s->solid ? s->particles.spacing : s->sheet_points.spacing;
+    p->dx = s->solid ? s->particles.dx : s->sheet_points.spacing;
     p->precision = s->engine->precision;
     p->simd = s->engine->simd;
     static const char *const of_solids[] = {"position", "velocity", "affine_velocity", "deformation_gradient", "volume", "density_scale"};
     static const char *const of_sheets[] = {"position", "velocity", "area"};
-    for (size_t i = 0; i < (s->sheet ? 3u : 6u); i++) add_plan_field(s, s->sheet ? of_sheets[i] : of_solids[i], s->sheet ? "particles" : "transfer");
+    for (size_t i = 0; s->solid && i < sizeof of_solids / sizeof *of_solids; i++) add_plan_field(s, of_solids[i], "transfer");
+    for (size_t i = 0; s->sheet && i < sizeof of_sheets / sizeof *of_sheets; i++) add_plan_field(s, of_sheets[i], "particles");
     for (int e = 0; e < p->effect_count; e++)
         for (int i = 0; (p->mask >> e & 1) && i < p->effects[e]->field_count; i++) add_plan_field(s, p->effects[e]->fields[i].key, p->effects[e]->name);
     p->bytes_per_particle = engine_bytes(s);
@@ -101,6 +103,16 @@ static void drop_loading_arrays(body_particles *p) {
     p->material = NULL;
 }
 
+/* Bodies of both kinds, sheets numbered after solids. */
+static status join_bodies(simulation *s, report *r) {
+    int64_t solids = s->particles.count;
+    s->bodies = memory_allocate((size_t)s->count);
+    if (!s->bodies) return report_set(r, STATUS_SYSTEM, "out of memory for the bodies of %lld particles", (long long)s->count);
+    memcpy(s->bodies, s->particles.body, (size_t)solids);
+    for (int64_t i = 0; i < s->sheet_points.count; i++) s->bodies[solids + i] = (uint8_t)(s->sheet_points.sheet[i] + s->scene->body_count);
+    return STATUS_OK;
+}
+
 static status create_solid(simulation *s, int threads, report *r) {
     solid_definition *d = memory_allocate(sizeof *d);
     status code = d ? bodies_sample(s->scene, &s->particles, r) : report_set(r, STATUS_SYSTEM, "out of memory for the plan");
@@ -109,24 +121,28 @@ static status create_solid(simulation *s, int threads, report *r) {
         s->solid = s->engine->create(d, r);
         code = s->solid ? STATUS_OK : r->code;
     }
-    s->count = s->particles.count;
-    if (code == STATUS_OK) {
-        make_plan(s, d->effect_mask, threads);
-        drop_loading_arrays(&s->particles);
-    }
+    if (code == STATUS_OK) s->plan.mask |= d->effect_mask;
     memory_free(d, sizeof *d);
     return code;
 }
 
 static status create_sheet(simulation *s, int threads, report *r) {
     status code = sheets_sample(s->scene, &s->sheet_points, r);
-    s->count = s->sheet_points.count;
     if (code == STATUS_OK) code = engine_create_sheet(s, threads, r);
     if (code != STATUS_OK) return code;
-    uint32_t mask = s->plan.mask;
     for (int e = 0; e < sheet_effects_first(); e++)
-        if (s->scene->effects[e].on && s->plan.effects[e]->scope == SCOPE_SCENE) mask |= 1u << e;
-    make_plan(s, mask, threads);
+        if (s->scene->effects[e].on && s->plan.effects[e]->scope == SCOPE_SCENE) s->plan.mask |= 1u << e;
+    return STATUS_OK;
+}
+
+static status create_engines(simulation *s, int threads, report *r) {
+    status code = s->plan.solid ? create_solid(s, threads, r) : STATUS_OK;
+    if (code == STATUS_OK && s->plan.sheet) code = create_sheet(s, threads, r);
+    s->count = s->particles.count + s->sheet_points.count;
+    if (code == STATUS_OK && s->solid && s->sheet) code = join_bodies(s, r);
+    if (code != STATUS_OK) return code;
+    make_plan(s, s->plan.mask, threads);
+    if (s->solid) drop_loading_arrays(&s->particles);
     return STATUS_OK;
 }
 
@@ -148,9 +164,10 @@ status simulation_create(const scene *definition, const simulation_options *opti
     s->frame_time = 1 / definition->fps;
     s->dt_min = HUGE_VAL;
     s->plan.effects = effect_catalogue(&s->plan.effect_count);
+    s->plan.solid = definition->body_count > 0;
     s->plan.sheet = definition->sheet_count > 0;
     int threads = options->threads > 0 ? options->threads : processor_count();
-    status code = s->plan.sheet ? create_sheet(s, threads, r) : create_solid(s, threads, r);
+    status code = create_engines(s, threads, r);
     if (code != STATUS_OK) {
         simulation_destroy(s);
         return code;
@@ -163,6 +180,7 @@ void simulation_destroy(simulation *s) {
     if (!s) return;
     if (s->solid) s->engine->destroy(s->solid);
     if (s->sheet) s->sheets->destroy(s->sheet);
+    memory_free(s->bodies, (size_t)s->count);
     sheets_free(&s->sheet_points);
     bodies_free(&s->particles);
     scene_copy_free(s->scene);
@@ -174,9 +192,10 @@ const simulation_plan *simulation_get_plan(const simulation *s) {
 }
 
 int simulation_stages(const simulation_plan *plan, char (*text)[48], int limit) {
-    if (!plan->sheet) return (plan->tetrahedra ? solid_tetra_find : solid_engine_find)(plan->precision, plan->simd)->stages(plan->mask, text, limit);
     char own[32][48];
-    int count = 0, stages = sheet_engine_find(plan->precision, plan->simd)->stages(plan->mask >> sheet_effects_first(), own, 32);
+    int count = plan->solid ? (plan->tetrahedra ? solid_tetra_find : solid_engine_find)(plan->precision, plan->simd)->stages(plan->mask, text, limit) : 0;
+    if (!plan->sheet) return count;
+    int stages = sheet_engine_find(plan->precision, plan->simd)->stages(plan->mask >> sheet_effects_first(), own, 32);
     for (int i = 0; i < stages && count < limit; i++) {
         memcpy(text[count++], own[i], sizeof own[i]);
         /* The scene's own effects, which both engines share, act where particles advance. */
@@ -252,7 +271,7 @@ static void warn_of_limits(simulation *s, double dt, const double limits[EFFECT_
         snprintf(s->warning, sizeof s->warning, "dt %.4g exceeds the limit %.4g of the effect '%s' at t = %.4g", dt, least, name, s->time);
     }
     int momentum = effect_index("elastic"), damage = effect_index("damage");
-    if (!s->sheet && !s->warned_damage && limits[damage] < 0.05 * limits[momentum]) {
+    if (s->solid && !s->warned_damage && limits[damage] < 0.05 * limits[momentum]) {
         s->warned_damage = true;
         snprintf(s->warning, sizeof s->warning,
                  "explicit damage limits the step to %.3g, %.0f times under the momentum's %.3g: a larger eta, or damage in its implicit form, is faster",
@@ -330,7 +349,7 @@ const char *simulation_take_warning(simulation *s) {
 }
 
 const uint8_t *simulation_bodies(const simulation *s) {
-    return s->sheet ? s->sheet_points.sheet : s->particles.body;
+    return s->bodies ? s->bodies : s->sheet ? s->sheet_points.sheet : s->particles.body;
 }
 
 const solid_engine *simulation_engine(const simulation *s, solid **state) {
@@ -346,7 +365,7 @@ const sheet_engine *simulation_sheet_engine(const simulation *s, sheet **state) 
 /* ---- measures ---------------------------------------------------------------------------------------------------- */
 
 static status measure_crack(simulation *s, simulation_measures *m, report *r) {
-    if (s->sheet || m->solid.damage_max <= 0.5) return STATUS_OK;
+    if (!s->solid || m->solid.damage_max <= 0.5) return STATUS_OK;
     size_t bytes = (size_t)s->particles.count * sizeof(double);
     double *damage = memory_allocate(bytes);
     if (!damage) return report_set(r, STATUS_SYSTEM, "out of memory for the crack measure");

@@ -26,7 +26,7 @@ typedef struct plan_field {
 typedef struct simulation_plan {
     int effect_count;
     const effect *const *effects; /* [effect_count], the catalogue */
-    bool sheet;                   /* the scene is one of sheets */
+    bool solid, sheet;            /* which kinds the scene has */
     uint32_t mask;                /* on */
     int field_count;
     plan_field fields[16];
@@ -34,7 +34,7 @@ typedef struct simulation_plan {
     double limits[EFFECT_LIMIT]; /* Δt, HUGE_VAL: none; from the initial state, cfl included */
     double dt;                   /* the first step's */
     double dx, spacing;
-    int64_t particles;
+    int64_t particles, sheet_particles; /* all, and those of sheets, which come last */
     int64_t tetrahedra; /* of which `particles` are the vertices; 0: material points */
     int threads, precision;
     const char *simd;
@@ -98,7 +98,7 @@ int64_t simulation_steps(const simulation *s);
 /* Measures of the state at a frame's end. Errors: out of memory. */
 status simulation_measure(simulation *s, simulation_measures *m, report *r);
 
-/* A frame's arrays in order of id: "solid/position" … or "sheet/position" … in the run's precision; in frame 0 the sheet's bonds too. The caller
+/* A frame's arrays in order of id: "solid/position" …, "sheet/position" … in the run's precision; in frame 0 the sheet's bonds too. The caller
  * clears the list. */
 status simulation_frame_records(const simulation *s, record_list *list, report *r);
 
@@ -112,10 +112,11 @@ status simulation_hash(const simulation *s, uint64_t *hash, report *r);
 /* The last warning about the time step, "" when there is none; cleared by the call. */
 const char *simulation_take_warning(simulation *s);
 
-/* Which body each particle belongs to, [particles] by id; owned by the simulation. */
+/* Which body each particle belongs to, [particles] by id, sheets after solids; owned by the simulation. */
 const uint8_t *simulation_bodies(const simulation *s);
 
-/* Copies a field in order of id, as the engines' `read`; out NULL: components alone. 0 when there is no such field. */
+/* Copies a field in order of id, as the engines' `read`, solids before sheets; where one kind has no such field it is 0 (but broken bonds stand for
+ * damage). out NULL: components alone. 0 when there is no such field. */
 int simulation_read(const simulation *s, const char *field, double *out);
 
 /* One number a particle, for pictures: fields with one component, and what is derived from others (speed, displacement, body; of solids

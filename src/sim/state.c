@@ -7,42 +7,43 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-static const char *set_of(const simulation *s) {
-    return s->sheet ? "sheet" : "solid";
+static const char *set_of(engine_kind kind) {
+    return kind == ENGINE_SHEET ? "sheet" : "solid";
 }
 
 /* Reads a field into a record of the run's precision. */
-static status add_field(const simulation *s, const char *field, const char *unit, record_list *list, report *r) {
-    int components = simulation_read(s, field, NULL);
-    if (components == 0) return STATUS_OK;
+static status add_field(const simulation *s, engine_kind kind, const char *field, const char *unit, record_list *list, report *r) {
+    int components = engine_read(s, kind, field, NULL);
     char name[RECORD_NAME];
-    snprintf(name, sizeof name, "%s/%s", set_of(s), field);
-    int64_t values = s->count * components;
+    snprintf(name, sizeof name, "%s/%s", set_of(kind), field);
+    if (components == 0 || record_find(list, name)) return STATUS_OK;
+    int64_t count = engine_count(s, kind), values = count * components;
     bool narrow = s->engine->precision == 32;
     void *data;
-    status code = record_add(list, name, narrow ? RECORD_F32 : RECORD_F64, s->count, components, unit, &data, r);
+    status code = record_add(list, name, narrow ? RECORD_F32 : RECORD_F64, count, components, unit, &data, r);
     if (code != STATUS_OK || !narrow) {
-        if (code == STATUS_OK) simulation_read(s, field, data);
+        if (code == STATUS_OK) engine_read(s, kind, field, data);
         return code;
     }
     double *wide = memory_allocate_array((size_t)values, sizeof *wide);
     if (!wide) return report_set(r, STATUS_SYSTEM, "out of memory for the field '%s'", field);
-    simulation_read(s, field, wide);
+    engine_read(s, kind, field, wide);
     for (int64_t i = 0; i < values; i++) ((float *)data)[i] = (float)wide[i];
     memory_free(wide, (size_t)values * sizeof *wide);
     return STATUS_OK;
 }
 
-static status add_ids(const simulation *s, record_list *list, report *r) {
+static status add_ids(const simulation *s, engine_kind kind, record_list *list, report *r) {
     void *data;
     char name[RECORD_NAME];
-    const uint8_t *body = simulation_bodies(s);
-    snprintf(name, sizeof name, "%s/id", set_of(s));
-    status code = record_add(list, name, RECORD_I32, s->count, 1, "1", &data, r);
-    for (int64_t i = 0; code == STATUS_OK && i < s->count; i++) ((int32_t *)data)[i] = (int32_t)i;
-    snprintf(name, sizeof name, "%s/body", set_of(s));
-    if (code == STATUS_OK) code = record_add(list, name, RECORD_I32, s->count, 1, "1", &data, r);
-    for (int64_t i = 0; code == STATUS_OK && i < s->count; i++) ((int32_t *)data)[i] = body[i];
+    int64_t count = engine_count(s, kind);
+    const uint8_t *body = kind == ENGINE_SHEET ? s->sheet_points.sheet : s->particles.body;
+    snprintf(name, sizeof name, "%s/id", set_of(kind));
+    status code = record_add(list, name, RECORD_I32, count, 1, "1", &data, r);
+    for (int64_t i = 0; code == STATUS_OK && i < count; i++) ((int32_t *)data)[i] = (int32_t)i;
+    snprintf(name, sizeof name, "%s/body", set_of(kind));
+    if (code == STATUS_OK) code = record_add(list, name, RECORD_I32, count, 1, "1", &data, r);
+    for (int64_t i = 0; code == STATUS_OK && i < count; i++) ((int32_t *)data)[i] = body[i];
     return code;
 }
 
@@ -66,19 +67,24 @@ static status add_tetrahedra(const simulation *s, record_list *list, report *r) 
     return code;
 }
 
-status simulation_frame_records(const simulation *s, record_list *list, report *r) {
-    status code = add_field(s, "position", "length", list, r);
-    if (code == STATUS_OK) code = add_field(s, "velocity", "length/time", list, r);
-    if (code == STATUS_OK) code = add_ids(s, list, r);
-    if (code == STATUS_OK) code = add_field(s, "deformation_gradient", "1", list, r);
+static status add_set(const simulation *s, engine_kind kind, record_list *list, report *r) {
+    if (engine_count(s, kind) == 0) return STATUS_OK;
+    status code = add_field(s, kind, "position", "length", list, r);
+    if (code == STATUS_OK) code = add_field(s, kind, "velocity", "length/time", list, r);
+    if (code == STATUS_OK) code = add_ids(s, kind, list, r);
+    if (code == STATUS_OK) code = add_field(s, kind, "deformation_gradient", "1", list, r);
     for (int e = 0; e < s->plan.effect_count && code == STATUS_OK; e++)
         for (int i = 0; i < s->plan.effects[e]->field_count && code == STATUS_OK; i++) {
             const effect_field *f = &s->plan.effects[e]->fields[i];
-            char name[RECORD_NAME];
-            snprintf(name, sizeof name, "%s/%s", set_of(s), f->key);
-            if (f->written && (s->plan.mask >> e & 1) && !record_find(list, name)) code = add_field(s, f->key, f->unit, list, r);
+            if (f->written && (s->plan.mask >> e & 1)) code = add_field(s, kind, f->key, f->unit, list, r);
         }
+    return code;
+}
+
+status simulation_frame_records(const simulation *s, record_list *list, report *r) {
+    status code = add_set(s, ENGINE_SOLID, list, r);
     if (code == STATUS_OK) code = add_tetrahedra(s, list, r);
+    if (code == STATUS_OK) code = add_set(s, ENGINE_SHEET, list, r);
     return code == STATUS_OK && s->sheet ? add_bonds(s, list, r) : code;
 }
 

@@ -11,7 +11,7 @@ SUNDER, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 PULL = os.path.join(SOURCE, "scenes/solid/tube_pull.lua")
 TOWEL = os.path.join(SOURCE, "scenes/sheet/paper_towel.lua")
 SMALL = ["--set", "particles=1500", "--set", "break_stretch=0.02", "--set", "pull=0.6"]
-WET = ["--set", "particles=900"]
+WET = ["--set", "variant=wet", "--set", "dx=0.06", "--set", "pull=1"]
 TURNS = ["2:eta=0.01", "2:tube.fibres.gamma=25", "4:break_stretch=0.01", "5:gravity=0,-3,0"]
 WET_TURNS = ["1:sources.1.strength=3", "2:softening.stiffness=0.9", "3:diffusion.k=2"]
 failures, checks = [], 0
@@ -148,10 +148,8 @@ def test_a_branch_is_its_parent():
         for scene, settings, turns in ((PULL, SMALL, TURNS), (TOWEL, WET, WET_TURNS)):
             base = [scene, *settings, "--frames", "7"]
             parent = box.good(*base, *turned(turns[:2]), "--keep", "all", "--threads", "2")
-            for frame in (0, 3, 7):
-                branch = box.good("--branch", f"{parent['run_id']}@{frame}", "--threads", "1") if frame >= 2 else None
-                if branch is None:
-                    continue
+            for frame in (3, 7):
+                branch = box.good("--branch", f"{parent['run_id']}@{frame}", "--threads", "1")
                 check(branch["state_hash"] == parent["state_hash"], f"a branch at {frame} without turns of its own")
                 check(branch["parent"] == parent["run_id"] and branch["parent_frame"] == frame and branch["run_id"] != parent["run_id"], "its own row")
                 check(frames_of(branch) == list(range(8)), f"frames of a branch at {frame}: {frames_of(branch)}")

@@ -182,13 +182,15 @@ static void compare_materials(const scene_material *a, const scene_material *b) 
     }
 }
 
-static void check_recipe(const char *scene_path, const knob_turn *turns, int turn_count) {
+static void check_recipe(const char *scene_path, const char *variant, const knob_turn *turns, int turn_count) {
+    const script_setting settings[] = {{"particles", "1200"}, {"variant", variant}};
     char path[128];
     report r;
     session_options o = small_run();
     static script_reports reports;
     o.scene_path = scene_path;
-    o.script.setting_count = 1; /* particles */
+    o.script.settings = settings;
+    o.script.setting_count = variant ? 2 : 1;
     o.frames = 2;
     o.turns = turns;
     o.turn_count = turn_count;
@@ -201,9 +203,9 @@ static void check_recipe(const char *scene_path, const knob_turn *turns, int tur
     script *plain = NULL, *loaded = NULL;
     script_options options = script_options_default();
     options.settings = o.script.settings;
-    options.setting_count = 1;
+    options.setting_count = o.script.setting_count;
     CHECK(script_load(scene_path, &options, &plain, &reports) == STATUS_OK);
-    options.recipe = path;
+    options.recipe = "saved"; /* in $SUNDER_RECIPES */
     status code = script_load(scene_path, &options, &loaded, &reports);
     if (code != STATUS_OK) printf("  %s: %s %s %s\n", path, reports.items[0].key, reports.items[0].expected, reports.items[0].found);
     CHECK(code == STATUS_OK);
@@ -220,11 +222,11 @@ static void recipes_resolve_to_the_values_that_were_tuned(void) {
     static const knob_turn tube[] = {{0, "sigma_c", "1234.5678901234567"}, {0, "damage.alpha", "-0.25"}, {1, "elastic.E", "33333.333333333336"}, {1, "lame", "paper"}};
     static const knob_turn stretch[] = {{0, "tube.damage.break_stretch", "0.07"}, {1, "eta", "0.3"}};
     static const knob_turn towel[] = {{0, "softening.stiffness", "0.123"}, {1, "diffusion.k", "0.7"}};
-    check_recipe(SUNDER_SOURCE "/scenes/solid/tube_pull.lua", tube, 4);
-    check_recipe(SUNDER_SOURCE "/scenes/solid/tube_pull.lua", stretch, 2);
-    check_recipe(SUNDER_SOURCE "/scenes/solid/heart.lua", NULL, 0);
-    check_recipe(SUNDER_SOURCE "/scenes/sheet/paper_towel.lua", towel, 2);
-    check_recipe(SUNDER_SOURCE "/scenes/sheet/foil.lua", NULL, 0);
+    check_recipe(SUNDER_SOURCE "/scenes/solid/tube_pull.lua", NULL, tube, 4);
+    check_recipe(SUNDER_SOURCE "/scenes/solid/tube_pull.lua", NULL, stretch, 2);
+    check_recipe(SUNDER_SOURCE "/scenes/solid/heart.lua", NULL, NULL, 0);
+    check_recipe(SUNDER_SOURCE "/scenes/sheet/paper_towel.lua", "wet", towel, 2);
+    check_recipe(SUNDER_SOURCE "/scenes/sheet/foil.lua", "wet", NULL, 0);
 }
 
 static void a_run_that_goes_on_is_not_resumed_beside_itself(void) {
@@ -262,6 +264,7 @@ int main(void) {
     if (!mkdtemp(folder)) return 1;
     snprintf(database, sizeof database, "%s/ledger.db", folder);
     setenv("XDG_DATA_HOME", folder, 1);
+    setenv("SUNDER_RECIPES", folder, 1);
     RUN(turns_by_hand_are_turns_known_beforehand);
     RUN(colours_are_chosen_while_a_run_is_paused_and_after_it);
     RUN(steps_tell_where_their_time_goes);

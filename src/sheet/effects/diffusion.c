@@ -34,8 +34,8 @@ static void spread(const pack_work *w) {
 }
 
 static void commit(const pack_work *w) {
-    for (int lane = 0; lane < PACK; lane++)
-        node_at(w->state, w->pack, lane)[3] = w->state->diffused_next[(int64_t)w->pack * PACK + lane];
+    const real *next = w->state->diffused_next + (int64_t)w->pack * PACK;
+    for (int lane = 0; lane < PACK; lane++) node_at(w->state, w->pack, lane)[3] = next[lane];
 }
 
 /* What sources give between two times: rates for the part of the time that they are on, held values where they are on at its end. */
@@ -60,6 +60,7 @@ void sheet_diffuse(sheet *s, double time) {
         sheet_for_packs(s, (real)interval, commit);
     }
     apply_sources(s, s->diffused_until, time);
+    if (s->rates) sheet_rates_feel(s);
     s->diffused_until = time;
 }
 

@@ -14,7 +14,8 @@
     X(bending)                                                                                                         \
     X(self_contact)                                                                                                    \
     X(drag)                                                                                                            \
-    X(damping)
+    X(damping)                                                                                                         \
+    X(multirate) /* no stage: it divides the step */
 
 #define SHEET_EFFECT_INDEX(name) SHEET_EFFECT_##name,
 enum { SHEET_EFFECT_LIST(SHEET_EFFECT_INDEX) SHEET_EFFECTS };

@@ -40,30 +40,48 @@ static void draw_side(tui_theme *theme, tui_area area, int row, int name_width, 
     draw_right(theme, area, row, name_width + 1 + VALUE, number, value);
 }
 
+/* "sigma_c 3.196e+04 = break_stretch 0.2" where two columns of each do not fit; the second name gives way. */
+static void draw_twins(tui_theme *theme, tui_area area, int row, const knob *k, const knob *twin, int chosen) {
+    const knob *sides[2] = {k, twin};
+    char value[KNOB_TEXT], name[64];
+    knob_show(twin, twin->value, value);
+    int end = area.width - draw_width(value) - 1, column = 1;
+    for (int i = 0; i < 2; i++) {
+        tui_style style = i == chosen ? STYLE_HEAD : sides[i]->derived || !sides[i]->live ? STYLE_DIM : STYLE_TEXT;
+        if (i == chosen) draw_text(theme, area, row, column - 1, STYLE_HEAD, "▸");
+        snprintf(name, sizeof name, "%.*s", i == 0 ? 14 : end > column ? end - column : 0, sides[i]->key);
+        column = draw_text(theme, area, row, column, style, name) + 1;
+        knob_show(sides[i], sides[i]->value, value);
+        tui_style number = changed(sides[i]) ? STYLE_WARN : sides[i]->derived ? STYLE_DIM : STYLE_STRONG;
+        if (i == 1) {
+            draw_right(theme, area, row, area.width, number, value);
+        } else {
+            column = draw_text(theme, area, row, column, number, value) + 1;
+            column = draw_text(theme, area, row, column, STYLE_DIM, "=") + 1;
+        }
+    }
+}
+
 static void draw_knob(const knob_panel *panel, tui_theme *theme, tui_area area, int row, int index) {
     const knob_row *r = &panel->rows[index];
     bool here = index == panel->cursor;
     int name_width = area.width >= WIDE ? NAME_WIDE : NAME_NARROW, used = name_width + VALUE + 2;
     const knob *k = &panel->list[r->knob];
-    if (r->twin < 0 || area.width < 2 * used - NAME_WIDE / 2) {
-        /* Too narrow for both: the side under the cursor, and a mark that there is another. */
-        const knob *side = here && panel->on_twin && r->twin >= 0 ? &panel->list[r->twin] : k;
-        draw_side(theme, area, row, name_width, side, here);
-        if (r->twin >= 0) {
-            char twin[64];
-            const knob *back = side == k ? &panel->list[r->twin] : k;
-            snprintf(twin, sizeof twin, "= %.*s", area.width > used + 3 ? area.width - used - 3 : 0, back->key);
-            draw_text(theme, area, row, used, STYLE_DIM, twin);
-        } else if (side->components == 1) {
-            draw_slider(theme, area, row, used, area.width - used, side, 0);
-        }
+    int chosen = !here ? -1 : panel->on_twin ? 1 : 0;
+    if (r->twin < 0) {
+        draw_side(theme, area, row, name_width, k, here);
+        if (k->components == 1) draw_slider(theme, area, row, used, area.width - used, k, 0);
         return;
     }
-    draw_side(theme, area, row, name_width, k, here && !panel->on_twin);
-    draw_text(theme, area, row, used, STYLE_DIM, "=");
+    const knob *twin = &panel->list[r->twin];
+    if (area.width < 2 * used + 2) {
+        draw_twins(theme, area, row, k, twin, chosen);
+        return;
+    }
     tui_area right = {area.y, area.x + used + 2, area.height, area.width - used - 2};
-    draw_side(theme, right, row, name_width < right.width - VALUE - 2 ? name_width : right.width - VALUE - 2, &panel->list[r->twin],
-              here && panel->on_twin);
+    draw_side(theme, area, row, name_width, k, chosen == 0);
+    draw_text(theme, area, row, used, STYLE_DIM, "=");
+    draw_side(theme, right, row, name_width, twin, chosen == 1);
 }
 
 /* ---- the current one --------------------------------------------------------------------------------------------- */

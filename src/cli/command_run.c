@@ -17,7 +17,7 @@ enum { TURN_LIMIT = 256 };
 typedef struct run_options {
     cli_scene_options scene;
     session_options session;
-    bool tui, json, quiet;
+    bool tui, json, quiet, keep_given;
     char command[1024], branch[512];
     int turn_count;
     knob_turn turns[TURN_LIMIT];
@@ -46,6 +46,8 @@ static const struct option long_options[] = {
     {NULL, 0, NULL, 0},
 };
 
+static const int64_t workbench_ring = (int64_t)2 << 30; /* bytes of checkpoints */
+
 static int parse_precision(run_options *o, const char *text) {
     if (strcmp(text, "f32") == 0) o->session.precision = 32;
     else if (strcmp(text, "f64") == 0) o->session.precision = 64;
@@ -55,6 +57,7 @@ static int parse_precision(run_options *o, const char *text) {
 
 static int parse_keep(run_options *o, const char *text) {
     long value;
+    o->keep_given = true;
     if (strcmp(text, "all") == 0) {
         o->session.keep = 0;
         return 0;
@@ -244,6 +247,8 @@ int command_run(int count, char **arguments) {
     if (code) return code;
     const char *why = NULL;
     bool screen = o.tui && tui_possible(&why);
+    /* What can be gone back to is a screen's timeline. */
+    if (screen && !o.keep_given) o.session.keep_bytes = workbench_ring;
     if (o.tui && !screen) fprintf(stderr, "sunder: the live view is off: %s\n", why);
     static script_reports reports;
     session *s = NULL;

@@ -152,6 +152,8 @@ static status settle_frame(session *s, double seconds, bool file, report *r) {
 /* While paused: waits for a step, an end of the pause, or a stop. True when a frame should be made. */
 static bool may_go_on(session *s) {
     bool told = false;
+    if (simulation_frame(s->simulation) < s->past_until && !atomic_load(&s->stop) && !atomic_load(&s->abandon))
+        return true; /* a branch that was asked to begin paused does so where it begins, not where its parent's checkpoint is */
     int64_t wanted = atomic_load(&s->pause_at);
     if (wanted >= 0 && simulation_frame(s->simulation) >= wanted) {
         atomic_store(&s->paused, 1);

@@ -67,6 +67,8 @@ static void measure_bonds(const sheet *s, int32_t p, int lane, sheet_measures *m
     m->bonds_broken += broken;
     m->broken_mean += share;
     m->broken_max = fmax(m->broken_max, share);
+    int bin = (int)(share * SHEET_BINS);
+    m->histogram[bin < SHEET_BINS ? bin : SHEET_BINS - 1] += 1;
 }
 
 /* ---- particles --------------------------------------------------------------------------------------------------- */
@@ -127,6 +129,7 @@ static void add_part(sheet_measures *m, const sheet_measures *part) {
     m->bonds_broken += part->bonds_broken;
     m->broken_mean += part->broken_mean;
     m->broken_max = fmax(m->broken_max, part->broken_max);
+    for (int i = 0; i < SHEET_BINS; i++) m->histogram[i] += part->histogram[i];
     m->diffused_total += part->diffused_total;
     m->diffused_min = fmin(m->diffused_min, part->diffused_min);
     m->diffused_max = fmax(m->diffused_max, part->diffused_max);
@@ -145,6 +148,7 @@ status sheet_measure(const sheet *s, sheet_measures *m, report *r) {
     m->bonds_total /= 2; /* both ends have counted it */
     m->bonds_broken /= 2;
     m->broken_mean /= (double)s->count;
+    for (int i = 0; i < SHEET_BINS; i++) m->histogram[i] /= (double)s->count;
     if (m->stretch_max == -HUGE_VAL) m->stretch_max = 0;
     m->grip_work = s->grip_work;
     memcpy(m->grip_impulse, s->grip_impulse, sizeof m->grip_impulse);

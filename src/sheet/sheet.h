@@ -12,7 +12,7 @@
 
 #include <stdint.h>
 
-enum { SHEET_MATERIALS = 16, SHEET_BODIES = 32, SHEET_BOUNDARIES = 64, SHEET_SOURCES = 64, SHEET_NOTCHES = 64 };
+enum { SHEET_MATERIALS = 16, SHEET_BODIES = 32, SHEET_BOUNDARIES = 64, SHEET_SOURCES = 64, SHEET_NOTCHES = 64, SHEET_BINS = 50 };
 /* A step is divided by 2^l, l < SHEET_LEVELS, where the effect multirate asks for it. */
 enum { SHEET_LEVELS = 8 };
 enum { SHEET_PHASE_BONDS, SHEET_PHASE_DIFFUSION, SHEET_PHASE_CONTACT, SHEET_PHASE_ADVANCE, SHEET_PHASES };
@@ -87,6 +87,7 @@ typedef struct sheet_measures {
     double grip_work, grip_impulse[3]; /* put in by boundaries since the start */
     int64_t bonds_total, bonds_broken; /* each bond counted once */
     double broken_mean, broken_max;    /* of each particle's fraction of broken bonds */
+    double histogram[SHEET_BINS];      /* fraction of particles by that, in equal bins over [0,1] */
     double diffused_total;             /* Σ ρ C A h θ */
     double diffused_min, diffused_max, stretch_max, speed_max;
 } sheet_measures;

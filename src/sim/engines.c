@@ -102,7 +102,8 @@ static void share_measures(const sheet_measures *from, solid_measures *to) {
     memcpy(to->angular_momentum, from->angular_momentum, sizeof to->angular_momentum);
     memcpy(to->grip_impulse, from->grip_impulse, sizeof to->grip_impulse);
     if (from->bonds_total > 0) to->broken_fraction = (double)from->bonds_broken / (double)from->bonds_total;
-    to->histogram[0] = 1;
+    _Static_assert(sizeof to->histogram == sizeof from->histogram, "one number of bins");
+    memcpy(to->histogram, from->histogram, sizeof to->histogram);
 }
 
 /* Sums, and the extremes of both; shares weigh by particles. What only solids have stays theirs. */

@@ -89,6 +89,22 @@ static void follow_scale(particle_view *view, const particle_points *points) {
     view->scale = has_natural ? points->natural : view_scale_join(view->scale, view_scale_fit(points->scalar, points->count));
 }
 
+/* A sheet is looked at nearly from the front (or from above, when it lies), where a body is looked at from a corner; a camera that was
+ * turned already stays as it is. */
+static void face(view_camera *camera, const float minimum[3], const float maximum[3]) {
+    view_camera usual = view_camera_default();
+    float longest = 0;
+    for (int i = 0; i < 3; i++) longest = fmaxf(longest, maximum[i] - minimum[i]);
+    if (camera->yaw != usual.yaw || camera->pitch != usual.pitch || !(longest > 0)) return;
+    if (maximum[2] - minimum[2] < 0.02f * longest) camera->yaw = camera->pitch = 0.15f;
+    else if (maximum[1] - minimum[1] < 0.02f * longest) camera->pitch = 0.9f;
+}
+
+void particle_view_face(particle_view *view) {
+    face(&view->camera, view->first_minimum, view->first_maximum);
+    view_camera_fit(&view->camera, view->fit_minimum, view->fit_maximum);
+}
+
 void particle_view_follow(particle_view *view, const particle_points *points, const float minimum[3], const float maximum[3]) {
     if (points->count == 0) return;
     if (!view->fitted) {
@@ -98,6 +114,7 @@ void particle_view_follow(particle_view *view, const particle_points *points, co
         memcpy(view->first_maximum, maximum, sizeof view->first_maximum);
         view->radius = view_particle_radius(points->position, points->count);
         view->fitted = true;
+        face(&view->camera, minimum, maximum);
     }
     follow_box(view, points);
     follow_scale(view, points);

@@ -44,6 +44,9 @@ void particle_view_close(particle_view *view);
 /* New particles: the box grows with them, and the scale. The first call's bounds, of the first frame, are the box's base. */
 void particle_view_follow(particle_view *view, const particle_points *points, const float minimum[3], const float maximum[3]);
 
+/* Turns a camera that is as it was at the start to where such a body is best seen from, and fits it. */
+void particle_view_face(particle_view *view);
+
 /* Forgets box and scale: the next particles are another run's. */
 void particle_view_forget(particle_view *view);
 

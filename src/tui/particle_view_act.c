@@ -90,7 +90,7 @@ status particle_view_act(particle_view *view, const char *verb, const char *argu
     }
     if (strcmp(verb, "reset") == 0) {
         view->camera = view_camera_default();
-        if (view->fitted) view_camera_fit(&view->camera, view->fit_minimum, view->fit_maximum);
+        if (view->fitted) particle_view_face(view);
         return STATUS_OK;
     }
     return report_input(r, NULL, 0, "view", "something that a camera does", verb, NULL);

@@ -8,7 +8,7 @@
 enum {
     BESIDE = 72, /* columns from which a panel stands beside the picture */
     NARROWEST = 36,
-    TWO_PANELS = 120,   /* columns from which there are two: numbers, and the one that was chosen */
+    TWO_PANELS = 140,   /* columns from which there are two: numbers, and the one that was chosen */
     ALL_PANELS = 160,   /* and with as many rows as below: all of them */
     ALL_ROWS = 44,
     WHOLE_COLUMNS = 50, /* a panel that has the screen to itself is cut into columns of so many */

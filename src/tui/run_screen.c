@@ -132,6 +132,7 @@ static void follow_run(tui_app *app, void *state, bool fresh) {
         own->knob_version = -1;
         own->pending_count = 0;
         own->chosen = -1;
+        own->colour[0] = '\0';
         own->checkpoint_count = own->turn_count = 0;
     }
     if (!app->run) return;

@@ -97,9 +97,10 @@ status run_colour(tui_app *app, const char *argument, report *r) {
     if (count > SESSION_COLOURS) count = SESSION_COLOURS;
     if (!argument[0]) {
         if (count == 0) return report_set(r, STATUS_INPUT, "This run has nothing to colour by.");
+        const char *asked = run_state_of(app)->colour, *now = asked[0] ? asked : app->shot->colour;
         int at = -1;
         for (int i = 0; i < count; i++) {
-            if (strcmp(names[i], run_state_of(app)->colour) == 0) at = i;
+            if (strcmp(names[i], now) == 0) at = i;
         }
         argument = names[(at + 1) % count];
     }

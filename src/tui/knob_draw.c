@@ -44,14 +44,14 @@ static void draw_side(tui_theme *theme, tui_area area, int row, int name_width, 
 static void draw_twins(tui_theme *theme, tui_area area, int row, const knob *k, const knob *twin, int chosen) {
     const knob *sides[2] = {k, twin};
     char value[KNOB_TEXT], name[64];
-    knob_show(twin, twin->value, value);
+    snprintf(value, sizeof value, "%.3g", twin->value[0]);
     int end = area.width - draw_width(value) - 1, column = 1;
     for (int i = 0; i < 2; i++) {
         tui_style style = i == chosen ? STYLE_HEAD : sides[i]->derived || !sides[i]->live ? STYLE_DIM : STYLE_TEXT;
         if (i == chosen) draw_text(theme, area, row, column - 1, STYLE_HEAD, "▸");
         snprintf(name, sizeof name, "%.*s", i == 0 ? 14 : end > column ? end - column : 0, sides[i]->key);
         column = draw_text(theme, area, row, column, style, name) + 1;
-        knob_show(sides[i], sides[i]->value, value);
+        snprintf(value, sizeof value, "%.3g", sides[i]->value[0]);
         tui_style number = changed(sides[i]) ? STYLE_WARN : sides[i]->derived ? STYLE_DIM : STYLE_STRONG;
         if (i == 1) {
             draw_right(theme, area, row, area.width, number, value);

@@ -199,7 +199,7 @@ static void draw_legend(const particle_view *view, tui_theme *theme, tui_area ar
     snprintf(name, sizeof name, "%s%s%s", points->name ? points->name : "", has_unit ? " " : "", has_unit ? points->unit : "");
     snprintf(low, sizeof low, "%.3g", view->scale.low);
     snprintf(high, sizeof high, "%.3g", view->scale.high);
-    int used = 1 + draw_width(low) + 2 + draw_width(high) + 1;
+    int used = 1 + draw_width(low) + 2 + draw_width(high) + 1 + (view->scale_is_set ? 4 : 0);
     if (used + draw_width(name) + 10 > area.width) snprintf(name, sizeof name, "%s", points->name ? points->name : "");
     int width = area.width - used - draw_width(name) - 2;
     width = width > LEGEND_WIDEST ? LEGEND_WIDEST : width;
@@ -219,19 +219,18 @@ static void draw_caption(const particle_view *view, const tui_theme *theme, tui_
     static const float degrees = 57.29578f;
     const view_cut *cut = &view->camera.cut;
     char parts[6][32] = {""};
-    snprintf(parts[0], sizeof parts[0], "yaw %+4.0f", (double)(view->camera.yaw * degrees));
-    snprintf(parts[1], sizeof parts[1], "pitch %+3.0f", (double)(view->camera.pitch * degrees));
-    snprintf(parts[2], sizeof parts[2], "zoom %5.2f", (double)view->camera.zoom);
     if (cut->axis != VIEW_CUT_NONE)
-        snprintf(parts[3], sizeof parts[3], "cut %s%s %.0f %%", cut->flipped ? "-" : "", view_cut_name(cut->axis),
-                 100 * (double)cut->place);
+        snprintf(parts[0], sizeof parts[0], "cut %s%s %.0f%%", cut->flipped ? "-" : "", view_cut_name(cut->axis), 100 * (double)cut->place);
+    snprintf(parts[1], sizeof parts[1], "yaw %+4.0f", (double)(view->camera.yaw * degrees));
+    snprintf(parts[2], sizeof parts[2], "pitch %+3.0f", (double)(view->camera.pitch * degrees));
+    snprintf(parts[3], sizeof parts[3], "zoom %5.2f", (double)view->camera.zoom);
     snprintf(parts[4], sizeof parts[4], "%s", view_mode_name(view->mode));
     snprintf(parts[5], sizeof parts[5], "%s", theme->colours ? view_palette_name(theme->palette) : "");
     int column = 1;
     for (int i = 0; i < 6; i++) {
         if (!parts[i][0]) continue;
         if (column + draw_width(parts[i]) > area.width) break;
-        column = draw_text(theme, area, row, column, STYLE_DIM, parts[i]) + 2;
+        column = draw_text(theme, area, row, column, STYLE_DIM, parts[i]) + (area.width < 60 ? 1 : 2);
     }
 }
 

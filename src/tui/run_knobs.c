@@ -119,8 +119,10 @@ static status turn_live(tui_app *app, run_state *state, int index, const double 
     return STATUS_OK;
 }
 
+/* Turns a knob, in view of whoever typed its name. */
 static status turn_to(tui_app *app, int index, const double value[3], report *r) {
     run_state *state = run_state_of(app);
+    state->panel = RUN_KNOBS;
     const knob *k = &state->knobs.list[index];
     if (k->live) return turn_live(app, state, index, value, r);
     char text[KNOB_TEXT];
@@ -208,6 +210,7 @@ static status turn_back(tui_app *app, run_state *state, const char *path, const 
     status s = app_turn(app, path, value, r);
     if (s != STATUS_OK) return s;
     knob_panel_undone(&state->knobs, by);
+    state->panel = RUN_KNOBS;
     reload(app, state);
     int index = knob_find(state->knobs.list, state->knobs.count, path, r);
     if (index >= 0) knob_panel_go(&state->knobs, index);

@@ -1,14 +1,21 @@
 #include "tui/timeline.h"
 
+#include <inttypes.h>
 #include <stdio.h>
+
+/* What stands before the line, in a width that does not change while the run goes on. */
+static void label(const timeline *line, tui_area area, char *text, size_t size) {
+    char last[32];
+    int digits = snprintf(last, sizeof last, "%" PRId64, line->last);
+    snprintf(text, size, "%s%*" PRId64 "/%s", area.width >= 60 ? "frame " : "", digits, line->now, last);
+}
 
 /* The columns of the line itself, within the row. */
 static void extent(const timeline *line, tui_area area, int *from, int *width) {
-    char first[32], last[32];
-    int left = snprintf(first, sizeof first, "%lld", (long long)line->first);
-    int right = snprintf(last, sizeof last, "%lld", (long long)line->last);
-    *from = left + 2;
-    *width = area.width - left - right - 4;
+    char text[64];
+    label(line, area, text, sizeof text);
+    *from = draw_width(text) + 2;
+    *width = area.width - *from - 1;
 }
 
 static int column_of(const timeline *line, int width, int64_t frame) {
@@ -30,8 +37,9 @@ void timeline_draw(const timeline *line, tui_theme *theme, tui_area area, int ro
     int from, width;
     extent(line, area, &from, &width);
     if (width < 8 || row >= area.height) return;
-    draw_format(theme, area, row, 1, STYLE_DIM, "%lld", (long long)line->first);
-    draw_format(theme, area, row, from + width + 1, STYLE_DIM, "%lld", (long long)line->last);
+    char text[64];
+    label(line, area, text, sizeof text);
+    draw_text(theme, area, row, 1, STYLE_TEXT, text);
     int now = column_of(line, width, line->now);
     for (int i = 0; i < width; i++) {
         if (i <= now) draw_text(theme, area, row, from + i, STYLE_PLOT, "─");

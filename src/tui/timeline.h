@@ -14,7 +14,7 @@ typedef struct timeline {
     int turn_count, event_count;
 } timeline;
 
-/* Draws it into a row of the area: "frame 12 ├─·──▲──!──█----┤ 240". */
+/* Draws it into a row of the area: "frame 12/240 ─·──▲──!──█╌╌╌╌". */
 void timeline_draw(const timeline *line, tui_theme *theme, tui_area area, int row);
 
 /* The checkpoint next to `from` in a direction, or −1; from −1 counts as beyond the last. */

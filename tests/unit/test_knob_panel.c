@@ -124,12 +124,12 @@ static void test_timeline(void) {
     CHECK(timeline_next(checkpoints, 4, 14, 1) == -1);
     CHECK(timeline_next(checkpoints, 0, 3, -1) == -1);
     timeline line = {.first = 0, .last = 100, .now = 50};
-    tui_area area = {0, 0, 1, 107}; /* "0", "100", four spaces: 99 columns of line */
+    tui_area area = {0, 0, 1, 113}; /* " frame  50/100 ", 98 columns of line less one, and one at the end */
     CHECK(timeline_frame_at(&line, area, 1) == -1);
-    CHECK(timeline_frame_at(&line, area, 3) == 0);
-    CHECK(timeline_frame_at(&line, area, 3 + 98) == 100);
-    CHECK(timeline_frame_at(&line, area, 3 + 49) == 50);
-    CHECK(timeline_frame_at(&line, area, 3 + 99) == -1);
+    CHECK(timeline_frame_at(&line, area, 15) == 0);
+    CHECK(timeline_frame_at(&line, area, 15 + 48) == 50);
+    CHECK(timeline_frame_at(&line, area, 15 + 96) == 100);
+    CHECK(timeline_frame_at(&line, area, 15 + 97) == -1);
 }
 
 int main(void) {

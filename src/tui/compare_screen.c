@@ -1,0 +1,336 @@
+/* The Compare screen: two runs at the same frame, with the same colours and camera, and how their histograms differ. */
+#include "tui/compare.h"
+
+#include "base/memory.h"
+
+#include <ctype.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double play_time = 0.1; /* s a frame */
+
+compare_state *compare_state_of(tui_app *app) {
+    report unused;
+    return screen_state(app, &screen_compare, &unused);
+}
+
+/* ---- which runs -------------------------------------------------------------------------------------------------- */
+
+typedef struct completion {
+    const char *text;
+    char *out;
+    int index;
+} completion;
+
+static status take_id(void *context, const ledger_cell *cells, int count, report *r) {
+    completion *c = context;
+    (void)count, (void)r;
+    const char *id = cells[0].text;
+    if (c->index >= 0 && id && strncmp(id, c->text, strlen(c->text)) == 0 && c->index-- == 0) snprintf(c->out, ACTION_ARGUMENT, "%s", id);
+    return STATUS_OK;
+}
+
+static bool complete_run(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
+    completion c = {.text = text, .out = out, .index = index};
+    char path[TUI_PATH];
+    report unused;
+    ledger *l = NULL;
+    out[0] = '\0';
+    if (app->database[0]) snprintf(path, sizeof path, "%s", app->database);
+    else if (ledger_default_path(path, sizeof path, &unused) != STATUS_OK) return false;
+    if (ledger_open(path, &l, &unused) == STATUS_OK)
+        (void)ledger_each_row(l, "SELECT id FROM runs ORDER BY started DESC LIMIT 100", NULL, 0, take_id, &c, &unused);
+    if (l) ledger_close(l);
+    return out[0] != '\0';
+}
+
+static status choose(tui_app *app, int side, const char *run, report *r) {
+    compare_state *state = compare_state_of(app);
+    status s = compare_choose(app, state, side, run, r);
+    if (s == STATUS_OK) app_log_argument(app, "%s", state->sides[side].id);
+    return s;
+}
+
+static status choose_left(tui_app *app, const char *argument, report *r) {
+    return choose(app, 0, argument, r);
+}
+
+static status choose_right(tui_app *app, const char *argument, report *r) {
+    return choose(app, 1, argument, r);
+}
+
+/* The run in view on the right; on the left what it is a branch of. */
+static status choose_branch(tui_app *app, const char *argument, report *r) {
+    (void)argument;
+    if (!app->run) return report_set(r, STATUS_INPUT, "There is no run; A and B choose runs of the ledger.");
+    compare_state *state = compare_state_of(app);
+    if (!app->shot->parent[0]) return report_set(r, STATUS_INPUT, "This run is no branch; A chooses what to compare it with.");
+    status s = compare_choose(app, state, 1, app->shot->run_id, r);
+    return s == STATUS_OK ? compare_choose(app, state, 0, app->shot->parent, r) : s;
+}
+
+static status swap(tui_app *app, const char *argument, report *r) {
+    (void)argument;
+    compare_state *state = compare_state_of(app);
+    char ids[COMPARE_SIDES][LEDGER_ID];
+    for (int i = 0; i < COMPARE_SIDES; i++) memcpy(ids[i], state->sides[i].id, LEDGER_ID);
+    if (!ids[0][0] || !ids[1][0]) return report_set(r, STATUS_INPUT, "There are no two runs; A and B choose them.");
+    status s = compare_choose(app, state, 0, ids[1], r);
+    return s == STATUS_OK ? compare_choose(app, state, 1, ids[0], r) : s;
+}
+
+/* ---- which frame ------------------------------------------------------------------------------------------------- */
+
+static status show_frame(tui_app *app, int64_t frame, report *r) {
+    compare_state *state = compare_state_of(app);
+    int64_t first, last;
+    if (!compare_range(state, &first, &last)) return report_set(r, STATUS_INPUT, "There are no frames; A and B choose runs.");
+    frame = frame < first ? first : frame > last ? last : frame;
+    state->follows = false;
+    state->frame = frame;
+    state->stale = true;
+    app_log_argument(app, "%" PRId64, frame);
+    return STATUS_OK;
+}
+
+static status by_frames(tui_app *app, const char *argument, int by, report *r) {
+    if (argument[0]) return show_frame(app, atoll(argument), r);
+    return show_frame(app, compare_state_of(app)->frame + by, r);
+}
+
+static status next_frame(tui_app *app, const char *argument, report *r) {
+    return by_frames(app, argument, 1, r);
+}
+
+static status previous_frame(tui_app *app, const char *argument, report *r) {
+    return by_frames(app, argument, -1, r);
+}
+
+static status many_on(tui_app *app, const char *argument, report *r) {
+    return by_frames(app, argument, 10, r);
+}
+
+static status many_back(tui_app *app, const char *argument, report *r) {
+    return by_frames(app, argument, -10, r);
+}
+
+static status first_frame(tui_app *app, const char *argument, report *r) {
+    (void)argument;
+    return show_frame(app, 0, r);
+}
+
+static status last_frame(tui_app *app, const char *argument, report *r) {
+    (void)argument;
+    status s = show_frame(app, INT64_MAX, r);
+    if (s == STATUS_OK) compare_state_of(app)->follows = true;
+    return s;
+}
+
+static status go_to_frame(tui_app *app, const char *argument, report *r) {
+    char *end;
+    double number = strtod(argument, &end);
+    if (end == argument || number < 0 || number != floor(number))
+        return report_input(r, NULL, 0, "frame", "the number of a frame", argument, NULL);
+    return show_frame(app, (int64_t)fmin(number, 1e15), r);
+}
+
+static status play(tui_app *app, const char *argument, report *r) {
+    (void)argument, (void)r;
+    compare_state *state = compare_state_of(app);
+    int64_t first, last;
+    state->plays = !state->plays;
+    state->next = app_clock() + play_time;
+    if (state->plays && compare_range(state, &first, &last) && state->frame >= last) state->frame = first, state->stale = true;
+    app_notice(app, state->plays ? "Playing; space stops." : "Stopped.");
+    return STATUS_OK;
+}
+
+/* ---- what is seen ------------------------------------------------------------------------------------------------ */
+
+static status act(tui_app *app, const char *verb, const char *argument, report *r) {
+    compare_state *state = compare_state_of(app);
+    char text[96];
+    status s = particle_view_act(&state->sides[0].view, verb, argument, text, r);
+    particle_view_match(&state->sides[1].view, &state->sides[0].view);
+    if (s == STATUS_OK && text[0]) app_notice(app, "%s", text);
+    return s;
+}
+
+#define COMPARE_VIEW(name, verb)                                                                                                           \
+    static status name(tui_app *app, const char *argument, report *r) {                                                                    \
+        return act(app, verb, argument, r);                                                                                                \
+    }
+COMPARE_VIEW(turn_left, "turn-left")
+COMPARE_VIEW(turn_right, "turn-right")
+COMPARE_VIEW(tilt_up, "tilt-up")
+COMPARE_VIEW(tilt_down, "tilt-down")
+COMPARE_VIEW(zoom_in, "zoom-in")
+COMPARE_VIEW(zoom_out, "zoom-out")
+COMPARE_VIEW(look, "look")
+COMPARE_VIEW(cut, "cut")
+COMPARE_VIEW(cut_in, "cut-in")
+COMPARE_VIEW(cut_out, "cut-out")
+COMPARE_VIEW(cut_flip, "cut-flip")
+COMPARE_VIEW(reset, "reset")
+COMPARE_VIEW(set_scale, "scale")
+#undef COMPARE_VIEW
+
+static status change_mode(tui_app *app, const char *argument, report *r) {
+    (void)argument, (void)r;
+    particle_view *view = &compare_state_of(app)->sides[0].view;
+    if (app->theme.ascii) return report_set(r, STATUS_INPUT, "Only ASCII: the locale's character set is not UTF-8.");
+    view->mode = (view_mode)((view->mode + 1) % VIEW_MODES);
+    particle_view_match(&compare_state_of(app)->sides[1].view, view);
+    view->old = true;
+    app_notice(app, "Particles as %s.", view_mode_name(view->mode));
+    return STATUS_OK;
+}
+
+static const frame_player *any_player(const compare_state *state) {
+    return state->sides[0].player ? state->sides[0].player : state->sides[1].player;
+}
+
+static bool complete_colour(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
+    const frame_player *p = any_player(compare_state_of(app));
+    for (int i = 0; p && frame_player_field(p, i); i++) {
+        if (strncmp(frame_player_field(p, i), text, strlen(text)) != 0 || index-- > 0) continue;
+        snprintf(out, ACTION_ARGUMENT, "%s", frame_player_field(p, i));
+        return true;
+    }
+    return false;
+}
+
+static status change_colour(tui_app *app, const char *argument, report *r) {
+    compare_state *state = compare_state_of(app);
+    const frame_player *p = any_player(state);
+    if (!p) return report_set(r, STATUS_INPUT, "There are no frames; A and B choose runs.");
+    int count = 0, at = -1;
+    for (; frame_player_field(p, count); count++) {
+        if (strcmp(frame_player_field(p, count), argument[0] ? argument : state->colour) == 0) at = count;
+    }
+    if (count == 0 || (argument[0] && at < 0))
+        return report_input(r, NULL, 0, "colour", "a quantity of these runs", argument, count ? frame_player_field(p, 0) : NULL);
+    snprintf(state->colour, sizeof state->colour, "%.31s", frame_player_field(p, argument[0] ? at : (at + 1) % count));
+    state->scale = (view_scale){0, 0};
+    state->stale = true;
+    app_log_argument(app, "%s", state->colour);
+    app_notice(app, "Coloured by %s.", state->colour);
+    return STATUS_OK;
+}
+
+static status change_histogram(tui_app *app, const char *argument, report *r) {
+    (void)argument, (void)r;
+    compare_state *state = compare_state_of(app);
+    state->log_histogram = !state->log_histogram;
+    app_notice(app, state->log_histogram ? "Histogram: logarithmic." : "Histogram: linear.");
+    return STATUS_OK;
+}
+
+static const tui_action actions[] = {
+    {"left", {'A'}, "A", "left", "choose the run on the left", .handler = choose_left, .argument = ARGUMENT_TEXT, .asks = "RUN", .complete = complete_run},
+    {"right", {'B'}, "B", "right", "choose the run on the right", .handler = choose_right, .argument = ARGUMENT_TEXT, .asks = "RUN", .complete = complete_run},
+    {"branch", {'b'}, "b", "branch", "the run in view beside the one that it is a branch of", .handler = choose_branch},
+    {"swap", {'w'}, "w", NULL, "left to right and right to left", .handler = swap},
+    {"play", {' '}, "space", "play", "let the frames go on by themselves", .handler = play},
+    {"next", {KEY_RIGHT, '.'}, "right", "frame", "the next frame", .handler = next_frame, .argument = ARGUMENT_MAY, .asks = "frame"},
+    {"previous", {KEY_LEFT, ','}, "left", NULL, "the frame before", .handler = previous_frame, .argument = ARGUMENT_MAY, .asks = "frame"},
+    {"on", {KEY_NPAGE, KEY_DOWN}, "PgDn", NULL, "ten frames on", .handler = many_on, .argument = ARGUMENT_MAY, .asks = "frame"},
+    {"back", {KEY_PPAGE, KEY_UP}, "PgUp", NULL, "ten frames back", .handler = many_back, .argument = ARGUMENT_MAY, .asks = "frame"},
+    {"first", {KEY_HOME, '['}, "home", NULL, "the first frame", .handler = first_frame},
+    {"last", {KEY_END, ']'}, "end", NULL, "the last frame that both have, and those that come", .handler = last_frame},
+    {"frame", {'r'}, "r", NULL, "go to a frame", .handler = go_to_frame, .argument = ARGUMENT_NUMBER, .asks = "frame"},
+    {"colour", {'v'}, "v", "colour", "colour by the next quantity", .handler = change_colour, .argument = ARGUMENT_MAY, .asks = "field", .complete = complete_colour},
+    {"scale", {0}, ":", NULL, "what the colours run over", .handler = set_scale, .argument = ARGUMENT_MAY, .asks = "LOW HIGH|auto"},
+    {"histogram", {'n'}, "n", "log", "histograms linear or logarithmic", .handler = change_histogram},
+    {"turn-left", {'h'}, "h", NULL, "turn the camera to the left", .handler = turn_left},
+    {"turn-right", {'l'}, "l", NULL, "turn the camera to the right", .handler = turn_right},
+    {"tilt-up", {'k'}, "k", NULL, "look from higher up", .handler = tilt_up},
+    {"tilt-down", {'j'}, "j", NULL, "look from lower down", .handler = tilt_down},
+    {"zoom-in", {'+', '='}, "+", NULL, "closer", .handler = zoom_in},
+    {"zoom-out", {'-', '_'}, "-", NULL, "further away", .handler = zoom_out},
+    {"look", {'i'}, "i", NULL, "look from the corner, the front, the side, the top", .handler = look, .argument = ARGUMENT_MAY, .asks = "corner|front|side|top"},
+    {"reset", {'0'}, "0", NULL, "the camera as it was at the start", .handler = reset},
+    {"cut", {'x'}, "x", "cut", "cut the bodies open across x, y, z, or not", .handler = cut, .argument = ARGUMENT_MAY, .asks = "x|y|z|off"},
+    {"cut-in", {'('}, "(", NULL, "move the cut down its axis", .handler = cut_in},
+    {"cut-out", {')'}, ")", NULL, "move the cut up its axis", .handler = cut_out},
+    {"cut-flip", {'X'}, "X", NULL, "leave out the other side of the cut", .handler = cut_flip},
+    {"mode", {'m'}, "m", NULL, "particles as braille, blocks or ASCII", .handler = change_mode},
+};
+
+/* ---- the screen -------------------------------------------------------------------------------------------------- */
+
+static status open_compare(tui_app *app, void **own, report *r) {
+    compare_state *state = *own = memory_allocate(sizeof *state);
+    if (!state) return report_set(r, STATUS_SYSTEM, "out of memory for the Compare screen");
+    const char *term = getenv("TERM");
+    view_mode finest = term && strcmp(term, "linux") == 0 ? VIEW_HALF : VIEW_BRAILLE;
+    view_mode mode = app->theme.ascii ? VIEW_ASCII : app->options.mode == TUI_AUTO ? finest : (view_mode)app->options.mode;
+    for (int i = 0; i < COMPARE_SIDES; i++) particle_view_open(&state->sides[i].view, mode);
+    state->follows = true;
+    return STATUS_OK;
+}
+
+static void close_compare(tui_app *app, void *own) {
+    compare_state *state = own;
+    (void)app;
+    for (int i = 0; i < COMPARE_SIDES; i++) {
+        if (state->sides[i].player) frame_player_close(state->sides[i].player);
+        particle_view_close(&state->sides[i].view);
+    }
+    memory_free(state, sizeof *state);
+}
+
+/* When nothing was chosen: the run in view, and beside it what it is a branch of. */
+static void enter_compare(tui_app *app, void *own) {
+    compare_state *state = own;
+    report unused;
+    state->stale = true;
+    if (!app->run || state->sides[0].id[0] || state->sides[1].id[0]) return;
+    (void)compare_choose(app, state, 1, app->shot->run_id, &unused);
+    (void)compare_choose(app, state, 0, app->shot->parent[0] ? app->shot->parent : app->shot->run_id, &unused);
+}
+
+/* The run in view has a new frame: a side that shows it knows of it. */
+static void follow_compare(tui_app *app, void *own, bool fresh) {
+    compare_state *state = own;
+    report r;
+    (void)fresh;
+    for (int i = 0; i < COMPARE_SIDES; i++) {
+        compare_side *side = &state->sides[i];
+        if (!app->run || strcmp(side->id, app->shot->run_id) != 0) continue;
+        if (!side->player && frame_player_open(side->folder, 0, &side->player, &r) != STATUS_OK) side->player = NULL;
+        if (side->player && frame_player_refresh(side->player, &r) == STATUS_OK && (state->follows || !side->has_frame)) state->stale = true;
+    }
+}
+
+static void tick_compare(tui_app *app, void *own, double now) {
+    compare_state *state = own;
+    int64_t first, last;
+    if (app->screen != &screen_compare) return;
+    if (state->plays && now >= state->next && compare_range(state, &first, &last)) {
+        state->next = now + play_time;
+        if (state->frame >= last) state->plays = false;
+        else state->frame++, state->stale = true;
+        app->dirty = true;
+    }
+    if (!state->stale) return;
+    compare_read(state);
+    app->dirty = true;
+}
+
+const tui_screen screen_compare = {
+    .name = "compare",
+    .title = "Compare",
+    .help = "two runs side by side, and how they differ",
+    .actions = actions,
+    .action_count = sizeof actions / sizeof *actions,
+    .open = open_compare,
+    .close = close_compare,
+    .enter = enter_compare,
+    .follow = follow_compare,
+    .tick = tick_compare,
+    .draw = compare_draw,
+};

@@ -15,7 +15,7 @@ endif()
 
 # The program itself in terminals of its own: every action of every screen, and command logs done again to the same bits.
 if(Python3_FOUND AND TARGET sunder)
-  foreach(name actions replay)
+  foreach(name actions manners replay)
     add_test(NAME tui_${name} COMMAND ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/tests/tui/test_${name}.py $<TARGET_FILE:sunder> ${CMAKE_SOURCE_DIR}/scenes)
     set_tests_properties(tui_${name} PROPERTIES SKIP_RETURN_CODE 77 TIMEOUT 900)
   endforeach()

@@ -228,7 +228,7 @@ static const tui_action table[] = {
     {.name = "quit", .keys = {'q'}, .keys_shown = "q", .hint = "quit", .help = "stop after this frame (asks first), or leave", .handler = quit,
      .argument = ARGUMENT_MAY, .asks = "stop"},
     {.name = "leave", .keys = {'Q'}, .keys_shown = "Q", .help = "leave at once; whole frames are kept", .handler = leave},
-    {.name = "theme", .keys = {'t'}, .keys_shown = "t", .hint = "theme", .help = "dark, light or colour-blind", .handler = change_theme,
+    {.name = "theme", .keys = {'t'}, .keys_shown = "t", .help = "dark, light or colour-blind", .handler = change_theme,
      .argument = ARGUMENT_MAY, .asks = "THEME", .complete = complete_theme},
     {.name = "mouse", .keys = {'M'}, .keys_shown = "M", .help = "the mouse for the workbench, or for the terminal", .handler = use_mouse,
      .argument = ARGUMENT_MAY, .asks = "on|off", .unlogged = true},

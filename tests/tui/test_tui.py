@@ -187,7 +187,7 @@ def test_200x60():
 
 def test_40x10():
     with demo(LONG, width=40, height=10) as s:
-        s.wait(r"\[Run\]  Tube pull")
+        s.wait(r"\[Run\] +Tube pull")
         s.wait(r"frame \d+/5000")
         s.wait(r"broken ")
         s.wait(r"space pause")

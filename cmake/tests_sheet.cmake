@@ -1,5 +1,5 @@
 # The verification of the sheet engine.
-foreach(name sheet_forces sheet_elastic sheet_diffusion sheet_fracture sheet_dynamics sheet_determinism sheet_multirate sheet_refresh sheet_sph)
+foreach(name sheet_forces sheet_elastic sheet_diffusion sheet_fracture sheet_dynamics sheet_determinism sheet_multirate sheet_refresh sheet_trapping sheet_sph)
   sunder_test(${name} ${CMAKE_SOURCE_DIR}/tests/verify/test_${name}.c sunder_sheet)
 endforeach()
 

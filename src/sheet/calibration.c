@@ -8,14 +8,6 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* How much a lattice holds a crack back: the toughness at which a straight crack runs in a clamped strip, over that of the bonds it cuts,
- * is the square of this. Measured by tests/verify/test_sheet_fracture.c: at 8 and at 24 neighbours on the square lattice and at 6 and
- * 18 on the hexagonal one; powers of the number of neighbours in between. Random sets are taken as square. */
-static double trapping_factor(sheet_lattice lattice, int neighbours) {
-    double excess = lattice == SHEET_HEXAGONAL ? 2.55 * pow(6.0 / neighbours, 0.606) : 1.48 * pow(8.0 / neighbours, 0.837);
-    return sqrt(1 + excess);
-}
-
 /* Sums over the neighbours of an interior particle. */
 typedef struct interior {
     double weight_sum; /* Σ W A */
@@ -144,7 +136,7 @@ static status calibrate_fracture(const sheet_body *b, const sheet_plan *p, const
     out->beta = p->beta;
     if (!p->fractures)
         return p->law == LAW_ELASTOPLASTIC && !(p->beta > 0) ? fail(r, "elastoplastic.beta", "a value above 0 where nothing fractures", "none") : STATUS_OK;
-    out->trapping = p->untrapped || p->paper ? 1 : trapping_factor(b->lattice, in->neighbours);
+    out->trapping = p->untrapped || p->paper ? 1 : sqrt(trapping_toughness(b->lattice, b->radius, in->neighbours));
     double energy = p->toughness / (per_energy * out->trapping * out->trapping);
     if (p->law == LAW_ELASTOPLASTIC) {
         status code = calibrate_plastic(p, energy, out, r);

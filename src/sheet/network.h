@@ -41,6 +41,11 @@ status network_calibrate(const sheet_definition *d, const sheet_plan *plans, she
 enum { LATTICE_LIMIT = 128 };
 int lattice_neighbours(sheet_lattice kind, double radius, double (*xy)[2]);
 
+/* What a straight crack needs of a lattice with isotropic weights, over the toughness of the bonds that it cuts: at rest, bond by bond; and while it runs. `radius` in spacings; at rest lattices
+ * alone. */
+double trapping_at_rest(sheet_lattice lattice, double radius);
+double trapping_toughness(sheet_lattice lattice, double radius, int neighbours);
+
 /* Weights of those neighbours. Errors: STATUS_INPUT when no weights ≥ 0 make the lattice isotropic. */
 status lattice_weights(sheet_weight kind, double radius, const double (*xy)[2], int count, double *weight, report *r);
 

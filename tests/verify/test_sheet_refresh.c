@@ -31,7 +31,7 @@ static const turn turns[] = {
     {"linear", "swelling", "alpha", 0.03, 0.06, false},
     {"linear", "softening", "stiffness", 0.5, 0.9, false},
     {"linear", "softening", "stretch", 0, 0.5, false},
-    {"linear", "softening", "floor", 0.01, 0.6, false},
+    {"linear", "softening", "floor", 0.01, 0.99, false},
     {"linear", "grain", "stiffness", 1, 2, false},
     {"linear", "grain", "toughness", 1, 2, false},
     {"linear", "bending", "stiffness", 1e-4, 3e-4, false},
@@ -51,6 +51,7 @@ static patch *busy_sheet(arena *memory, const turn *t, double value) {
     patch_fill(p, SIDE, SIDE);
     patch_set(p, t->law, "E", 100);
     if (strcmp(t->law, "elastoplastic") == 0) patch_set(p, t->law, "eta0", 0.01), patch_set(p, t->law, "beta", 0.1), patch_set(p, t->law, "poisson", 1);
+    if (strcmp(t->law, "rubber") == 0) patch_set(p, t->law, "c_star", -0.5);
     patch_set(p, "fracture", "stretch", 0.05);
     patch_set(p, "diffusion", "k", 0.05);
     patch_set(p, "swelling", "alpha", 0.03);
@@ -78,7 +79,7 @@ typedef struct picture {
 } picture;
 
 static const double STEP = 5e-4; /* far below every limit here */
-static const int64_t STEPS = 60;
+static const int64_t STEPS = 120;
 
 static void go(patch *p, picture *out) {
     memset(out, 0, sizeof *out);
@@ -116,7 +117,9 @@ static void a_turned_sheet_is_one_made_so(void) {
         go(b, &made);
         go(c, &untouched);
         CHECK(same(&turned, &made, t, "at once"));
-        CHECK(strcmp(t->effect, "multirate") == 0 || strcmp(t->effect, "self_contact") == 0 || memcmp(&turned, &untouched, sizeof turned) != 0); /* it does something */
+        bool acts = memcmp(&turned, &untouched, sizeof turned) != 0;
+        if (!acts) printf("  %s.%s does nothing here\n", t->effect, t->key);
+        CHECK(acts || strcmp(t->effect, "multirate") == 0 || strcmp(t->effect, "self_contact") == 0); /* those act later than this run */
         patch_free(a), patch_free(b), patch_free(c);
         arena_destroy(memory);
     }

@@ -59,6 +59,7 @@ static void straighten(const pack_work *w) {
 
 static status before(sheet *s, real dt, report *r) {
     (void)r;
+    if (!s->laplace) return STATUS_OK; /* a stiffness of 0 */
     sheet_for_packs(s, dt, curve);
     sheet_for_packs(s, dt, straighten);
     return STATUS_OK;
@@ -67,6 +68,7 @@ static status before(sheet *s, real dt, report *r) {
 static double energy(const sheet *s, int32_t p, int lane) {
     const sheet_pack *pack = &s->packs[p];
     const body_constants *b = &s->bodies[pack->body];
+    if (!s->laplace) return 0;
     double L[3] = {0}, square = 0;
     real total = 0;
     for (int32_t k = 0; k < pack->slots; k++) {

@@ -161,7 +161,7 @@ static void gravity_and_sources_are_turned(void) {
     b->d.gravity[2] = -3;
     b->d.feeds = &(sheet_feed){.strength = 0.25};
     CHECK(patch_start(a, 64, "auto", 1) && patch_start(b, 64, "auto", 1));
-    a->engine->surround(a->state, (const double[]){0, 0, -3});
+    a->engine->surround(a->state, (const double[]){0, 0, -3}, a->d.cfl);
     a->engine->feed(a->state, &(sheet_feed){.strength = 0.25});
     CHECK(refresh(a, &none));
     go(a, &turned);

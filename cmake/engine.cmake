@@ -1,8 +1,9 @@
 # Engines: their kernels are compiled once for each precision and instruction set, from one source (src/base/simd.h).
-set(SUNDER_SIMD_NAMES plain)
+set(names plain)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-  list(APPEND SUNDER_SIMD_NAMES avx2 avx512)
+  list(APPEND names avx2 avx512)
 endif()
+set(SUNDER_SIMD_NAMES ${names} CACHE STRING "Instruction sets to build: all, or plain alone, which is a third of the work")
 set(SUNDER_SIMD_FLAGS_plain "")
 set(SUNDER_SIMD_FLAGS_avx2 -mavx2 -mfma)
 set(SUNDER_SIMD_FLAGS_avx512 -mavx512f -mavx512dq -mavx512bw -mavx512vl -mfma -mprefer-vector-width=512)

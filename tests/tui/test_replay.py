@@ -159,7 +159,7 @@ def config_binds_keys_and_wrong_ones_are_told():
         s.keys("F9")
         s.wait(r"\[Console\]")
     for wrong, message in (('return {\n  keys = {\n    F9 = "run.pausse" },\n}\n', r"config\.lua:3: .*run\.pause"),
-                           ('return {\n  theme = "lite" }\n', r"config\.lua:2: theme.*light"), ("return {\n  keys = { }\n", r"config\.lua:\d"),
+                           ('return {\n  theme = "lightt" }\n', r"config\.lua:2: theme.*light"), ("return {\n  keys = { }\n", r"config\.lua:\d"),
                            ('return {\n  keyz = {} }\n', r"config\.lua:\d.*keys"), ('return {\n\n  styles = { goood = 3 } }\n', r"config\.lua:3.*good")):
         with Bench("solid/tube_pull.lua --set particles=900", config=wrong) as s:
             s.wait(message)

@@ -102,6 +102,25 @@ def turns_rewind_branch_and_recipe():
 
 
 @test
+def a_diffusion_source_is_turned():
+    with Bench("sheet/paper_towel.lua --set particles=900 --set variant=wet --frames 60") as s:
+        s.paused()
+        turn(s, "sources.1.strength", "0.5")
+        s.keys("Space")
+        s.wait(r"frame +(1\d|[2-9]\d?)/")
+        turn(s, "strength", "3")
+        s.wait(r"done *$", patience=60)
+        s.keys("q")
+        s.wait(r"^END")
+        log = os.path.join(s.sql("SELECT output FROM runs")[0][0], "commands.log")
+        kept = os.path.join(s.folder, "kept.log")
+        shutil.copy(log, kept)
+        turned = s.sql("SELECT path, frame FROM knob_turns")
+        check(len(turned) == 2 and turned[0][1] < turned[1][1], f"in the ledger: {turned}")
+        replays_to_the_same_bits(s, kept)
+
+
+@test
 def a_stop_is_replayed_at_its_frame():
     with Bench("solid/tube_pull.lua --set particles=1500 --set duration=4 --precision f64") as s:
         s.wait(r"frame +[3-9]/")

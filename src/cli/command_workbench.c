@@ -44,8 +44,9 @@ int command_workbench(int count, char **arguments) {
     const char *why;
     if (!tui_possible(&why)) {
         if (!look.replay) {
+            int code = command_help(0, NULL);
             if (isatty(STDOUT_FILENO)) fprintf(stderr, "sunder: the workbench is off: %s\n", why);
-            return command_help(0, NULL);
+            return code;
         }
         look.headless = true;
     }

@@ -220,6 +220,7 @@ static bool next_choice(const scenes_state *s, const preview_parameter *p, int s
 static status variant(tui_app *app, const char *argument, report *r) {
     scenes_state *s = state_of(app);
     char text[SCENES_SETTING];
+    if (!s->facts.loaded || strcmp(s->facts.words, s->asked) != 0) return report_set(r, STATUS_INPUT, "The scene is still being read.");
     for (int i = 0; i < s->facts.parameter_count; i++) {
         const preview_parameter *p = &s->facts.parameters[i];
         if (strcmp(p->name, "variant") != 0) continue;

@@ -95,6 +95,7 @@ def main():
     parser.add_argument("scene")
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--frames", type=int, default=8)
+    parser.add_argument("--threads", type=int, default=0)
     parser.add_argument("--set", action="append", default=[])
     parser.add_argument("--width", type=int, default=200)
     parser.add_argument("--height", type=int, default=60)
@@ -103,8 +104,9 @@ def main():
     rows, delays = {"quiet": [], "workbench": []}, []
     with tempfile.TemporaryDirectory(prefix="sunder-bench-") as base_folder:
         environment = dict(os.environ, TERM="xterm-256color", LC_ALL="C.UTF-8", XDG_DATA_HOME=base_folder, XDG_CONFIG_HOME=base_folder)
+        threads = ["--threads", str(o.threads)] if o.threads else []
         settings = [word for setting in o.set for word in ("--set", setting)]
-        base = [os.path.abspath(o.sunder), "run", o.scene, *settings, "--frames", str(o.frames), "--db", os.path.join(base_folder, "ledger.db")]
+        base = [os.path.abspath(o.sunder), "run", o.scene, *settings, *threads, "--frames", str(o.frames), "--db", os.path.join(base_folder, "ledger.db")]
         for i in range(o.rounds):
             rows["quiet"].append(quiet(o, base, os.path.join(base_folder, f"quiet{i}"), environment))
             figures, more = workbench(o, base, os.path.join(base_folder, f"workbench{i}"), environment)

@@ -34,7 +34,7 @@ def run(s):
     line(s, "query('SELECT count(*) AS n FROM runs')[1].n + 6")
     s.wait(r"^ 7$")
     line(s, "turn('etaa', 1)")
-    s.wait(r"did you mean")
+    s.wait(r"did\s+you\s+mean")
     line(s, "os.execute('true')")
     s.wait(r"sandbox")
     line(s, "sunder.sphere")

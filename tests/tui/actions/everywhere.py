@@ -50,7 +50,7 @@ def screens(s):
     s.do("screen console")
     s.wait(r"\[Console\]")
     s.do("screen runn")
-    s.wait(r"did you mean")
+    s.wait(r"did\s+you\s+mean")
 
 
 @covers("start", start=None)
@@ -63,7 +63,7 @@ def start(s):
     s.do("start tube_pul")
     s.wait(r"tube_pul")
     s.do("start tube_pull --sett a=b")
-    s.wait(r"did you mean")
+    s.wait(r"did\s+you\s+mean")
 
 
 @covers("quit")
@@ -95,8 +95,8 @@ def theme(s):
     s.keys("t")
     s.wait(r"Theme: dark")
     check(s.text(True).splitlines()[0] != light.splitlines()[0], "dark and light look alike")
-    s.do("theme lite")
-    s.wait(r"did you mean")
+    s.do("theme lightt")
+    s.wait(r"did\s+you\s+mean")
 
 
 @covers("mouse")

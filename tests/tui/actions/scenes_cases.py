@@ -43,7 +43,7 @@ def choose(s):
     s.do("scenes.choose foil")
     s.wait(r"sheet/foil\.lua")
     s.do("scenes.choose foill")
-    s.wait(r"did you mean")
+    s.wait(r"did\s+you\s+mean")
     with open(f"{s.folder}/mine.lua", "w", encoding="utf-8") as file:
         file.write('-- My own.\nlocal s = require "sunder"\nreturn s.scene { title = "Mine" }\n')
     s.keys("R")
@@ -61,11 +61,11 @@ def settings(s):
     s.keys("Enter")  # the variant is the last parameter: the next one
     s.wait(r"variant +isotropic")
     s.keys("Up", "Enter")
-    s.wait(r"^:scenes\.set angle=45")
-    s.keys("BSpace", "BSpace")
-    s.type("30")
+    s.wait(r"^:scenes\.set pull=0\.1")
+    s.keys("BSpace")
+    s.type("25")
     s.keys("Enter")
-    s.wait(r"angle +30")
+    s.wait(r"pull +0\.25")
     s.keys("Left")
     s.wait(r"Enter changes", absent=True)
 
@@ -73,6 +73,7 @@ def settings(s):
 @covers("scenes.set", "scenes.variant", "scenes.recipe", "scenes.precision", "scenes.clear", start=None, width=100, height=40)
 def choices(s):
     listed(s)
+    s.wait(r"variant +full")
     s.keys("v")
     s.wait(r"variant +isotropic")
     s.keys("s")

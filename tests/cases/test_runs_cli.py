@@ -64,6 +64,8 @@ def test_asking(box, runs):
     check({"best", "effect_of", "history"} <= set(names), "ready-made queries are listed")
     effect = box.json("runs", "query", "effect_of", "parameter=pull")
     check(len(effect["rows"]) == 1 and effect["rows"][0][2] == len(runs), "a ready-made query with a parameter")
+    check([row[0] for row in box.json("runs", "query", "effect_of", "parameter=eta")["rows"]] == [0.1, 0.4], "by the end of a dotted name")
+    check(box.json("runs", "query", "effect_of", "parameter=ta")["rows"] == [], "but not by the end of a word")
     code, out, _ = box.call("runs", "query", "effect_of", "help")
     check(code == 0 and ":parameter" in out, "what a query asks for")
     code, _, err = box.call("runs", "query", "effect_off")

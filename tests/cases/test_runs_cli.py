@@ -85,7 +85,7 @@ def test_remarks(box, runs):
     check(box.json("runs", "tag", run, "paper", "figure 2") == {"run_id": run, "tags": ["figure 2", "paper"]}, "tags are added")
     check(box.json("runs", "tag", run[-6:], "paper", "--remove")["tags"] == ["figure 2"], "and taken away, by the end of an id")
     check(box.call("runs", "tag", run, "papre", "--remove")[0] == 2, "a tag that it does not have")
-    check(box.call("runs", "note", run, "tears", "too late")[0] == 0, "a note")
+    check(box.json("runs", "note", run, "tears", "too late") == {"run_id": run, "note": "tears too late"}, "a note")
     check(box.rows("SELECT text FROM notes") == [("tears too late",)], "its words make one text")
     check(box.call("runs", "note", run)[0] == 2, "a note without a text")
     check(run in box.call("runs", "list", "--where", "tags = 'figure 2'")[1], "found by its tag")

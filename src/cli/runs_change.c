@@ -71,12 +71,23 @@ status verb_tag(ledger *l, const runs_options *o, int count, char **names, int *
 status verb_note(ledger *l, const runs_options *o, int count, char **names, int *exit, report *r) {
     char id[LEDGER_ID], text[4096] = "";
     size_t used = 0;
-    (void)exit, (void)o;
+    (void)exit;
     if (count < 2) return report_input(r, NULL, 0, "runs note", "a run and a text", count ? "no text" : "neither", NULL);
     for (int i = 1; i < count && used < sizeof text; i++) used += (size_t)snprintf(text + used, sizeof text - used, "%s%s", i > 1 ? " " : "", names[i]);
     if (used >= sizeof text) return report_input(r, NULL, 0, "runs note", "a text of under 4096 bytes", "a longer one", NULL);
     status code = runs_find(l, names[0], id, NULL, r);
-    return code == STATUS_OK ? ledger_note(l, id, text, r) : code;
+    if (code == STATUS_OK) code = ledger_note(l, id, text, r);
+    if (code != STATUS_OK || !o->json) return code;
+    json_writer w;
+    json_begin(&w, 0);
+    json_object(&w);
+    json_member_string(&w, "run_id", id);
+    json_member_string(&w, "note", text);
+    json_object_end(&w);
+    code = json_finish(&w, r);
+    if (code == STATUS_OK) puts(w.text);
+    json_free(&w);
+    return code;
 }
 
 /* ---- taking runs away -------------------------------------------------------------------------------------------- */

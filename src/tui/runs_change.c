@@ -16,7 +16,8 @@
 status runs_tag(tui_app *app, const char *argument, report *r) {
     runs_state *s = runs_state_of(app);
     bool on = argument[0] != '-';
-    status code = runs_choose_shown(s, 1, r);
+    /* Of a page that shows runs, those. */
+    status code = s->page == RUNS_TABLE || s->shown_count == 0 ? runs_choose_shown(s, 1, r) : STATUS_OK;
     if (code == STATUS_OK) code = ledger_batch_begin(s->l, r);
     if (code != STATUS_OK) return code;
     for (int i = 0; i < s->shown_count && code == STATUS_OK; i++) {

@@ -57,8 +57,8 @@ status runs_open(tui_app *app, const char *argument, report *r) {
     snprintf(s->field, sizeof s->field, "%s", field ? field : "");
     particle_view_forget(&s->view);
     code = runs_show_frame(app, s, 0, r);
-    if (code == STATUS_OK) s->page = RUNS_PLAYER;
-    else runs_close_player(s);
+    s->page = code == STATUS_OK ? RUNS_PLAYER : RUNS_TABLE;
+    if (code != STATUS_OK) runs_close_player(s);
     app_log_argument(app, "%s", id);
     return code;
 }

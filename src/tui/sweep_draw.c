@@ -33,7 +33,8 @@ static int count_state(const sweep_state *s, cell_state state) {
 
 static void draw_head(tui_app *app, const sweep_state *s, tui_area area) {
     int column = draw_text(&app->theme, area, 0, 0, STYLE_STRONG, s->plan.title[0] ? s->plan.title : s->scripts[s->script]);
-    column = draw_format(&app->theme, area, 0, column, STYLE_DIM, "  %s  ", s->plan.scene);
+    const char *slash = strrchr(s->plan.scene, '/');
+    column = draw_format(&app->theme, area, 0, column, STYLE_DIM, "  %s  ", slash ? slash + 1 : s->plan.scene);
     column = draw_format(&app->theme, area, 0, column, STYLE_GOOD, "%d done", count_state(s, CELL_DONE));
     if (count_state(s, CELL_FAILED)) column = draw_format(&app->theme, area, 0, column, STYLE_BAD, "  %d failed", count_state(s, CELL_FAILED));
     column = draw_format(&app->theme, area, 0, column, STYLE_DIM, "  of %d%s", s->count, s->listing ? "  looking what is done" : s->going ? "  going on" : "");
@@ -119,7 +120,7 @@ static void draw_foot(tui_app *app, const sweep_state *s, tui_area area) {
     column = draw_format(&app->theme, area, 0, column, STYLE_STRONG, "%s", cell->id[0] ? cell->id : state_word(cell));
     if (isfinite(cell->value)) column = draw_format(&app->theme, area, 0, column, STYLE_TEXT, "  %s = %.6g", s->measure, cell->value);
     if (cell->message[0]) draw_format(&app->theme, area, 0, column, STYLE_BAD, "  %s", cell->message);
-    else if (s->said[0] && !s->going) draw_format(&app->theme, area, 0, column, STYLE_DIM, "  %s", s->said);
+    else if (s->said[0] && s->child.ended && s->child.exit_code == 2) draw_format(&app->theme, area, 0, column, STYLE_DIM, "  %s", s->said);
 }
 
 void sweep_draw(tui_app *app, void *state, tui_area area) {

@@ -195,6 +195,7 @@ static status choose(tui_app *app, const char *argument, report *r) {
     if (s->loaded && !argument[0]) { /* of a grid: the run's frames */
         int run = sweep_run_at(s, s->at[0], s->at[1]);
         if (run < 0 || !s->cells[run].id[0]) return report_set(r, STATUS_INPUT, "There is no run here yet.");
+        app_log_nothing(app); /* which cell the cursor was in is not in the log */
         app_show(app, &screen_runs);
         return app_do(app, "runs.open", s->cells[run].id, r);
     }

@@ -6,6 +6,7 @@ Needs tmux, python3-pil and fonts-dejavu-core. Each NAME is a function here; wit
 """
 import argparse
 import os
+import subprocess
 import sys
 import tempfile
 import time
@@ -99,14 +100,75 @@ def sheet(screen):
     do(screen, "run.mode")
 
 
-ARGUMENTS = {"sheet": run("sheet/paper_towel.lua")}
+# A library of sixteen runs for the screens of past runs: a sweep over two parameters.
+SWEEP = """return require("sunder").sweep {{
+  title = "How it tears", scene = "{scenes}/solid/tube_pull.lua", frames = 36, set = {{ particles = 1500, pull = 0.4 }},
+  over = {{ break_stretch = {{ 0.05, 0.1, 0.2, 0.3 }}, eta = {{ 0.05, 0.2, 0.45, 0.8 }} }},
+}}
+"""
 
 
-def take(sunder, name, out):
+@shot(140, 32)
+def runs(screen):
+    do(screen, "screen runs")
+    screen.wait("16 of 16 runs")
+    do(screen, "runs.columns eta break_stretch broken_fraction damage_mean wall_s tags variant")
+    do(screen, "runs.sort -broken_fraction")
+    screen.keys("Space", "Space", "Space")
+
+
+@shot(120, 36)
+def runs_plot(screen):
+    do(screen, "screen runs")
+    screen.wait("16 of 16 runs")
+    screen.keys("Space", "Down", "Down", "Down", "Space", "Down", "Down", "Down", "Space")
+    do(screen, "runs.plot broken_fraction")
+
+
+@shot(120, 32)
+def runs_diff(screen):
+    do(screen, "screen runs")
+    screen.wait("16 of 16 runs")
+    screen.keys("Space", "Space", "Space", "d")
+
+
+@shot(100, 30)
+def runs_frames(screen):
+    do(screen, "screen runs")
+    screen.wait("16 of 16 runs")
+    screen.keys("Enter")
+    screen.wait("frame 0 of 36")
+    do(screen, "runs.frame 30")
+
+
+@shot(100, 30)
+def sweep(screen):
+    do(screen, "screen sweep")
+    do(screen, "sweep.choose tearing.lua")
+    screen.wait("16 done")
+    screen.keys("Right", "Down")
+
+
+LIBRARY = ("runs", "runs_plot", "runs_diff", "runs_frames", "sweep")
+ARGUMENTS = {"sheet": run("sheet/paper_towel.lua"), **{name: "" for name in LIBRARY}}
+
+
+def fill_library(sunder, home):
+    """Makes the sixteen runs in the ledger of `home`, once for all pictures."""
+    os.makedirs(f"{home}/sweeps", exist_ok=True)
+    with open(f"{home}/sweeps/tearing.lua", "w", encoding="utf-8") as file:
+        file.write(SWEEP.format(scenes=os.path.abspath(SCENES)))
+    subprocess.run([sunder, "sweep", "sweeps/tearing.lua", "--threads", "1", "--quiet", "--db", f"{home}/ledger.db"], cwd=home, check=True,
+                   env=dict(os.environ, XDG_DATA_HOME=home))
+
+
+def take(sunder, name, out, library):
     function, width, height = SHOTS[name]
     test_tui.DEMO = sunder
     with tempfile.TemporaryDirectory() as home:
-        variables = f"export XDG_DATA_HOME={home} XDG_CONFIG_HOME={home};"
+        if name in LIBRARY:
+            home = library
+        variables = f"export XDG_DATA_HOME={home} XDG_CONFIG_HOME={home};{f' cd {home};' if name in LIBRARY else ''}"
         with Screen(f"{ARGUMENTS.get(name, TUBE)} --db {home}/ledger.db", width=width, height=height, variables=variables) as screen:
             function(screen)
             screen.wait(r"\S")
@@ -123,12 +185,16 @@ def main():
     parser.add_argument("names", nargs="*")
     options = parser.parse_args()
     failed = 0
-    for name in options.names or SHOTS:
-        try:
-            take(os.path.abspath(options.sunder), name, options.out)
-        except (Failure, KeyError) as error:
-            failed += 1
-            print(f"{name}: {error}", file=sys.stderr)
+    names = options.names or list(SHOTS)
+    with tempfile.TemporaryDirectory() as library:
+        if set(names) & set(LIBRARY):
+            fill_library(os.path.abspath(options.sunder), library)
+        for name in names:
+            try:
+                take(os.path.abspath(options.sunder), name, options.out, library)
+            except (Failure, KeyError) as error:
+                failed += 1
+                print(f"{name}: {error}", file=sys.stderr)
     sys.exit(failed > 0)
 
 

@@ -62,7 +62,7 @@ def table_is_filtered_and_sorted(s):
     s.wait(r"3 of 3 runs")
     s.do("runs.columns tags")  # taken away
     s.wait(r"^  id .*tags", absent=True)
-    for _ in range(8):
+    for _ in range(12):
         s.keys("Left")
     s.keys("s")
     s.wait(r"id ▲")

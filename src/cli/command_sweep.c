@@ -253,9 +253,9 @@ static status run_all(sweep_command *c, report *r) {
             while (next < c->count && c->runs[next].state != RUN_WAITING) next++;
             if (next == c->count || c->job[slot].run >= 0) continue;
             code = launch(c, slot, next, r);
-            if (code == STATUS_OK) going++;
+            if (code != STATUS_OK) close_job(&c->job[slot]);
+            else going++;
             if (code == STATUS_OK && c->verbose) say(c, next, "started");
-            else close_job(&c->job[slot]);
         }
         if (going == 0) return code;
         int outcome;

@@ -170,7 +170,7 @@ def test_check_says_what_is_wrong():
         first = report["errors"][0]
         check(first["nearest"] == "nu" and first["line"] and "typo.lua" in first["file"], f"file, line and nearest name: {first}")
         code, out, _ = box.call("check", PULL, "--json")
-        check(code == 0 and json.loads(out) == {"ok": True, "errors": []}, "a right scene is ok")
+        check(code == 0 and json.loads(out) == {"ok": True, "errors": [], "notes": []}, "a right scene is ok")
         for wrong in (["run"], ["run", PULL, "--frames", "many"], ["run", PULL, "--set", "etta=1"], ["run", PULL, "--precision", "f16"],
                       ["run", PULL, "--simd", "neon9"], ["rum", PULL], ["runs", "lits"], ["check"], ["run", PULL, "--frobnicate"]):
             code, _, err = box.call(*wrong)

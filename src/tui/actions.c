@@ -13,7 +13,7 @@
 /* ---- leaving ----------------------------------------------------------------------------------------------------- */
 
 static void stop_run(tui_app *app) {
-    app->leave_at_end = true;
+    app->leave_at_end = app->shell->quitting = true;
     app_end_run(app);
 }
 

@@ -13,7 +13,7 @@
 /* ---- leaving ----------------------------------------------------------------------------------------------------- */
 
 static void stop_run(tui_app *app) {
-    app->leave_at_end = true;
+    app->leave_at_end = app->shell->quitting = true;
     app_end_run(app);
 }
 
@@ -193,8 +193,11 @@ static status start_run(tui_app *app, const char *argument, report *r) {
 static bool complete_start(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
     (void)app;
     enum { MOST = 256 };
-    static library_scene list[MOST];
-    int count = library_scenes(list, MOST);
+    static library_scene list[MOST]; /* kept for a moment: all candidates are asked for at every key */
+    static double looked;
+    static int count;
+    if (looked == 0 || app_clock() - looked > 2) count = library_scenes(list, MOST);
+    looked = app_clock();
     for (int i = 0; i < count; i++) {
         bool begins = strncmp(list[i].name, text, strlen(text)) == 0 || strncmp(list[i].path, text, strlen(text)) == 0;
         if (!begins || index-- > 0) continue;

@@ -6,6 +6,7 @@
 
 #include <errno.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char header[] = "# sunder commands 1: FRAME ACTION ARGUMENT; sunder --replay FILE does them again\n";
 
@@ -93,6 +94,7 @@ void log_attach(tui_app *app) {
     command_log *log = &app->shell->log;
     if (log->attached || !app->shot->output[0]) return;
     log->attached = true;
+    if (access(app->shot->output, F_OK) != 0) return; /* nothing is kept of this run */
     char path[TUI_PATH];
     report r;
     if (snprintf(path, sizeof path, "%s/commands.log", app->shot->output) >= (int)sizeof path) return;

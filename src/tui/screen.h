@@ -71,7 +71,7 @@ typedef struct tui_screen {
     void (*mouse)(tui_app *app, void *state, tui_area area, int row, int column, int wheel);
 } tui_screen;
 
-/* The screens in the order of their keys: F2 is the first, and so is 1 where digits are free. */
+/* The screens in the order of their keys: F2 is the first. */
 const tui_screen *const *tui_screens(int *count);
 const tui_screen *tui_screen_find(const char *name);
 

@@ -131,6 +131,7 @@ typedef struct tui_shell {
     tui_binding bindings[SHELL_BINDINGS];
     int binding_count;
 
+    bool quitting; /* a run that is only being started is to be stopped at once */
     bool asking; /* a question is on the message line */
     char question[192], yes_action[SHELL_NAME], yes_argument[ACTION_ARGUMENT];
     int yes_key;

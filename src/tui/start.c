@@ -102,7 +102,8 @@ void start_tick(tui_app *app) {
     }
     app->notice[0] = '\0';
     app_switch_run(app, start->made);
-    if (app->headless && app->shell->replay.outcome.code != STATUS_OK) app_end_run(app); /* asked for before the replay failed */
+    bool failed = app->headless && app->shell->replay.outcome.code != STATUS_OK; /* the replay, after it had asked for this run */
+    if (app->shell->quitting || failed) app_end_run(app);
 }
 
 void start_close(tui_app *app) {

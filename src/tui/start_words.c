@@ -9,8 +9,8 @@
 
 static const int64_t ring_bytes = (int64_t)2 << 30; /* of checkpoints, for rewinding */
 
-static const char *const options_known[] = {"--recipe", "--set",  "--frames", "--threads", "--precision",
-                                            "--simd",   "--keep", "--paused", "--checkpoint-every"};
+static const char *const options_known[] = {"--recipe", "--set",  "--frames", "--threads",          "--precision",
+                                            "--simd",   "--keep", "--paused", "--checkpoint-every", "--turn"};
 
 /* Cuts text into words, in place; quotes are taken off. Returns how many. */
 static int cut(char *text, char **words) {
@@ -52,12 +52,27 @@ static status take_setting(start_words *out, char *word, report *r) {
     return STATUS_OK;
 }
 
+static status take_turn(start_words *out, const char *word, report *r) {
+    char *end = NULL;
+    long long frame = word ? strtoll(word, &end, 10) : 0;
+    const char *path = end && end != word && *end == ':' ? end + 1 : "", *equals = strchr(path, '=');
+    if (!equals || equals == path || equals - path >= KNOB_PATH || strlen(equals + 1) >= KNOB_TEXT)
+        return refuse(r, "--turn", "FRAME:PATH=VALUE", word);
+    if (out->options.turn_count == START_TURNS_SAID) return refuse(r, "--turn", "fewer turns", word);
+    knob_turn *turn = &out->turns[out->options.turn_count++];
+    turn->frame = frame;
+    snprintf(turn->path, sizeof turn->path, "%.*s", (int)(equals - path), path);
+    snprintf(turn->value, sizeof turn->value, "%s", equals + 1);
+    return STATUS_OK;
+}
+
 /* One option and its word; NULL when there is none. */
 static status take_option(start_words *out, const char *option, char *word, report *r) {
     session_options *o = &out->options;
     int64_t value = 0;
     status s = STATUS_OK;
     if (strcmp(option, "--set") == 0) return take_setting(out, word, r);
+    if (strcmp(option, "--turn") == 0) return take_turn(out, word, r);
     if (strcmp(option, "--recipe") == 0) o->script.recipe = word;
     else if (strcmp(option, "--simd") == 0) o->simd = word;
     else if (strcmp(option, "--frames") == 0) s = take_whole(option, word, 0, &o->frames, r);
@@ -86,6 +101,7 @@ status start_parse(const char *text, start_words *out, report *r) {
     out->options = session_options_default();
     out->options.keep_bytes = ring_bytes;
     out->options.script.settings = out->settings;
+    out->options.turns = out->turns;
     if (strlen(text) >= START_TEXT) return refuse(r, "start", "fewer than 1024 characters", "more");
     strcpy(out->text, text);
     int count = cut(out->text, words);
@@ -134,6 +150,11 @@ bool start_print(const session_options *o, char out[START_TEXT]) {
     }
     if (o->precision == 64) add(out, &used, "%s%s", "--precision", ""), add(out, &used, "%s%s", "f64", "");
     if (o->simd && strcmp(o->simd, "auto") != 0) add(out, &used, "%s%s", "--simd", ""), add(out, &used, "%s%s", o->simd, "");
+    for (int i = 0; i < o->turn_count; i++) {
+        char turn[KNOB_PATH + KNOB_TEXT + 32];
+        snprintf(turn, sizeof turn, "%lld:%s", (long long)o->turns[i].frame, o->turns[i].path);
+        add(out, &used, "%s%s", "--turn", ""), add(out, &used, "%s=%s", turn, o->turns[i].value);
+    }
     if (o->start_paused) add(out, &used, "%s%s", "--paused", "");
     return used < START_TEXT;
 }

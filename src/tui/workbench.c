@@ -176,12 +176,17 @@ static void loop(tui_app *app) {
 
 /* ---- beginning and end ------------------------------------------------------------------------------------------- */
 
-/* A run that the command line has started is noted as if it had been started here. */
-static void log_start(tui_app *app, const session *run) {
+/* A run that the command line has started is noted as if it had been started here. One that goes on from another's frames is the same as one from
+ * the beginning with all the turns up to there. */
+static void log_start(tui_app *app, session *run) {
+    knob_turn turns[START_TURNS_SAID];
     session_options asked;
     char words[START_TEXT];
     session_request(run, &asked);
-    if (start_print(&asked, words)) log_line(app, -1, "start", words);
+    asked.turn_count = session_turns(run, turns, START_TURNS_SAID);
+    asked.turns = turns;
+    bool fits = asked.turn_count <= START_TURNS_SAID && start_print(&asked, words);
+    log_line(app, -1, "start", fits ? words : "# more settings and turns than a line holds: not to be replayed");
 }
 
 static status app_open(tui_app *app, session *run, bool unicode, const user_config *config, report *config_trouble, report *r) {

@@ -41,8 +41,8 @@ def screens():
 
 def each_screen(s):
     """Goes to each screen in turn."""
-    for i, name in enumerate(screens()):
-        s.keys(f"F{i + 2}")
+    for name in screens():
+        s.do(f"screen {name}")
         s.wait(rf"\[{name.capitalize()}\]")
         time.sleep(0.3)
         yield name
@@ -109,7 +109,8 @@ def no_colour_where_there_is_none():
             s.wait(r"\[Run\]")
             for name in each_screen(s):
                 check(not re.search(COLOUR, s.text(True)), f"{name}: colours with {variables or term}")
-            s.keys("F3", "q")
+            s.do("screen run")
+            s.keys("q")
             s.wait(r"^status 0")
             s.restored(first_line=False)
 

@@ -137,6 +137,18 @@ def a_stop_is_replayed_at_its_frame():
 
 
 @test
+def turns_known_beforehand_are_in_the_log():
+    with Bench("solid/tube_pull.lua --set particles=900 --frames 12 --turn 2:eta=0.2 --turn 9:break_stretch=0.1") as s:
+        s.wait(r"done *$", patience=60)
+        s.keys("q")
+        s.wait(r"^END")
+        kept = os.path.join(s.folder, "kept.log")
+        shutil.copy(os.path.join(s.sql("SELECT output FROM runs")[0][0], "commands.log"), kept)
+        check(len(s.sql("SELECT 1 FROM knob_turns")) == 2, "the turns are not in the ledger")
+        replays_to_the_same_bits(s, kept)
+
+
+@test
 def the_log_of_a_killed_session_goes_on_to_the_end():
     with Bench("sheet/seaweed.lua --set particles=900 --frames 12") as s:
         s.wait(r"frame +[2-9]/")

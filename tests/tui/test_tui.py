@@ -196,7 +196,7 @@ def test_40x10():
         s.keys(*["NPage"] * 12)
         s.wait(r"draw the screen anew")  # the last line of help can be reached
         s.keys("q", "q")
-        s.wait(r"Stop\?")
+        s.wait(r"Stop the run after this frame\?")
         s.keys("q")
         s.finished(130, outcome=4)
 
@@ -311,7 +311,7 @@ def test_end_stays_until_q():
     with demo("--frames 5 --frame-ms 20 --particles 500") as s:
         s.wait(r"done *$")
         s.wait(r"Done\. Frames are in runs/")
-        s.wait(r"100 %")
+        s.wait(r"frame +5/5")
         time.sleep(0.3)
         s.wait(r"done *$")
         s.keys("q")
@@ -332,7 +332,7 @@ def test_failure_is_told():
 
 
 def test_ctrl_c_finishes_the_frame():
-    with demo("--frames 500 --frame-ms 1500 --particles 500") as s:
+    with demo("--frames 500 --frame-ms 4000 --particles 500") as s:
         s.running().keys("C-c")
         s.wait(r"stopping *$")
         s.wait(r"Finishing the frame")

@@ -250,7 +250,7 @@ def a_sweep_fills_its_grid(s):
     s.wait(r"break_stretch +0\.02, 0\.3")
     s.keys("r")
     s.wait(r"running")
-    s.wait(r"6 done +of 12$", patience=120)
+    s.wait(r"12 done +of 12$", patience=120)
     s.do("sweep.measure damage_max")
     s.wait(r"damage_max +of the last frame: break_stretch down, eta across")
     values = [row[0] for row in s.sql("SELECT value FROM final_measures AS m JOIN runs USING (run) WHERE m.name = 'damage_max' AND runs.frames_wanted = 1")]
@@ -271,7 +271,7 @@ def a_sweep_fills_its_grid(s):
     s.keys("BSpace")
     s.wait(r"Sweeps at hand")
     s.do("sweep.choose little.lua")
-    s.wait(r"6 done +of 12$", "what is done is known again", patience=60)
+    s.wait(r"12 done +of 12$", "what is done is known again", patience=60)
 
 
 @covers("sweep.stop", start=None, width=100, height=30)

@@ -80,7 +80,7 @@ def table_is_filtered_and_sorted(s):
             s.keys("Up")  # marking goes on to the next
 
 
-@covers("runs.mark", "runs.unmark", "runs.diff", "runs.detail", start=None)
+@covers("runs.mark", "runs.unmark", "runs.diff", "runs.detail", "runs.beside", start=None)
 def marked_runs_are_compared(s):
     ids = runs(s)
     s.keys("d")
@@ -94,8 +94,15 @@ def marked_runs_are_compared(s):
     check(not re.search(r"^  \S*pull ", s.text(), re.M), "what is the same is not there")
     s.keys("BSpace")
     s.wait(r"3 of 3 runs")
+    s.keys("b")
+    s.wait(r"\[Compare\]")
+    s.wait(r"frame \d .*frame \d")
+    s.do("screen runs")
+    s.wait(r"2 marked")
     s.keys("u")
     s.wait(r"marked", absent=True)
+    s.keys("b")
+    s.wait(r"Mark two runs")
     s.keys("<", "i")
     s.wait(r"^  \S*pull +0\.6")
     s.keys(">")

@@ -92,6 +92,15 @@ status runs_colour(tui_app *app, const char *argument, report *r) {
     return STATUS_OK;
 }
 
+status runs_beside(tui_app *app, const char *argument, report *r) {
+    runs_state *s = runs_state_of(app);
+    (void)argument;
+    if (s->mark_count != 2) return report_set(r, STATUS_INPUT, "Mark two runs with space first.");
+    app_show(app, &screen_compare);
+    status code = app_do(app, "compare.left", s->marks[0], r);
+    return code == STATUS_OK ? app_do(app, "compare.right", s->marks[1], r) : code;
+}
+
 void runs_tick_player(tui_app *app, runs_state *s, double now) {
     report r;
     if (s->page != RUNS_PLAYER || !s->playing || now < s->next_frame) return;

@@ -407,6 +407,7 @@ static const tui_action actions[] = {
      .argument = ARGUMENT_TEXT, .asks = "NAME…", .complete = runs_complete_column},
     {"drop-column", {'x'}, "x", NULL, "take this column away", .handler = runs_drop_column},
     {"diff", {'d'}, "d", "differ", "what differs between the marked runs", .handler = runs_diff},
+    {"beside", {'b'}, "b", NULL, "two marked runs beside each other, frame by frame", .handler = runs_beside},
     {"detail", {'i'}, "i", "all", "all that is known of the run", .handler = runs_detail, .argument = ARGUMENT_MAY, .asks = "RUN", .complete = runs_complete_run},
     {"plot", {'p'}, "p", "plot", "a measure of the marked runs over time", .handler = runs_plot, .argument = ARGUMENT_MAY, .asks = "MEASURE",
      .complete = runs_complete_measure},

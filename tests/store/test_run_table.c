@@ -73,7 +73,10 @@ static const char *filtered(run_table *t, const char *filter) {
     int rows[16], count = 0;
     report r;
     text[0] = '\0';
-    if (run_table_filter(t, filter, rows, &count, &r) != STATUS_OK) return r.nearest[0] ? r.nearest : "wrong";
+    if (run_table_filter(t, filter, rows, &count, &r) != STATUS_OK) {
+        snprintf(text, sizeof text, "%.60s", r.nearest[0] ? r.nearest : "wrong");
+        return text;
+    }
     for (int i = 0; i < count; i++) snprintf(text + i, sizeof text - (size_t)i, "%d", rows[i]);
     return text;
 }

@@ -92,6 +92,7 @@ static void test_values(void) {
     for (int64_t i = 0; i < s.vertex_count; i++)
         if (fabsf(s.value[i] - s.vertex[3 * i]) > 0.25F) CHECK(false);
     CHECK_NEAR(volume(&s), 4.0 / 3 * M_PI, 0.1 * 4.0 / 3 * M_PI);
+    view_surface_free(&s);
     position[3 * n] = NAN, position[3 * n + 1] = 0, position[3 * n + 2] = 0; /* a particle that is lost changes nothing */
     o.spacing = 0.2F;
     CHECK(view_surface_make(position, NULL, n, &o, &s, &r) == STATUS_OK && view_surface_make(position, NULL, n + 1, &o, &same, &r) == STATUS_OK);

@@ -80,7 +80,7 @@ def table_is_filtered_and_sorted(s):
             s.keys("Up")  # marking goes on to the next
 
 
-@covers("runs.mark", "runs.unmark", "runs.diff", "runs.detail", start=None)
+@covers("runs.mark", "runs.unmark", "runs.diff", "runs.detail", "runs.beside", start=None)
 def marked_runs_are_compared(s):
     ids = runs(s)
     s.keys("d")
@@ -94,8 +94,15 @@ def marked_runs_are_compared(s):
     check(not re.search(r"^  \S*pull ", s.text(), re.M), "what is the same is not there")
     s.keys("BSpace")
     s.wait(r"3 of 3 runs")
+    s.keys("b")
+    s.wait(r"\[Compare\]")
+    s.wait(r"frame \d .*frame \d")
+    s.do("screen runs")
+    s.wait(r"2 marked")
     s.keys("u")
     s.wait(r"marked", absent=True)
+    s.keys("b")
+    s.wait(r"Mark two runs")
     s.keys("<", "i")
     s.wait(r"^  \S*pull +0\.6")
     s.keys(">")
@@ -250,7 +257,7 @@ def a_sweep_fills_its_grid(s):
     s.wait(r"break_stretch +0\.02, 0\.3")
     s.keys("r")
     s.wait(r"running")
-    s.wait(r"6 done +of 12$", patience=120)
+    s.wait(r"12 done +of 12$", patience=120)
     s.do("sweep.measure damage_max")
     s.wait(r"damage_max +of the last frame: break_stretch down, eta across")
     values = [row[0] for row in s.sql("SELECT value FROM final_measures AS m JOIN runs USING (run) WHERE m.name = 'damage_max' AND runs.frames_wanted = 1")]
@@ -271,7 +278,7 @@ def a_sweep_fills_its_grid(s):
     s.keys("BSpace")
     s.wait(r"Sweeps at hand")
     s.do("sweep.choose little.lua")
-    s.wait(r"6 done +of 12$", "what is done is known again", patience=60)
+    s.wait(r"12 done +of 12$", "what is done is known again", patience=60)
 
 
 @covers("sweep.stop", start=None, width=100, height=30)

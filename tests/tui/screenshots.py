@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Takes the pictures of the workbench in docs/pictures: opens it in tmux, does what a user would, draws what tmux captured.
 
-Usage: tests/tui/screenshots.py SUNDER [--out docs/pictures] [NAME ...]     from the root of the repository
+Usage: tests/tui/screenshots.py [--out docs/pictures] SUNDER [NAME ...]     from the root of the repository
 Needs tmux, python3-pil and fonts-dejavu-core. Each NAME is a function here; without names all of them are taken.
 """
 import argparse
@@ -187,7 +187,7 @@ def fill_library(sunder, home):
 def take(sunder, name, out, library):
     chosen = SHOTS[name]
     test_tui.DEMO = sunder
-    with tempfile.TemporaryDirectory() as own:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as own:
         home = library if chosen.library else own
         variables = f"export XDG_DATA_HOME={home} XDG_CONFIG_HOME={home};{f' cd {home};' if chosen.library else ''}"
         with Screen(f"{chosen.start} --db {home}/ledger.db", width=chosen.width, height=chosen.height, variables=variables) as screen:
@@ -198,6 +198,8 @@ def take(sunder, name, out, library):
             path = os.path.join(out, f"{name}.png")
             terminal_picture.save(screen.tmux("capture-pane", "-p", "-e", "-N"), chosen.width, chosen.height, path)
             print(path, flush=True)
+            screen.keys("Q")
+            screen.wait("^status", patience=60)  # the run has left its folder
 
 
 def main():
@@ -207,7 +209,7 @@ def main():
     parser.add_argument("names", nargs="*")
     options = parser.parse_args()
     sunder, names, failed = os.path.abspath(options.sunder), options.names or list(SHOTS), 0
-    with tempfile.TemporaryDirectory() as library:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as library:
         if any(name in SHOTS and SHOTS[name].library for name in names):
             fill_library(sunder, library)
         for name in names:

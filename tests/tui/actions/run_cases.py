@@ -30,6 +30,8 @@ def panels(s):
     for pattern in (r"damage over time", r"▸", r"time of steps", r"events ─", r"kinetic "):
         s.keys("p")
         s.wait(pattern)
+    s.do("run.panel time")
+    s.shows(r"dt +\d\.\d+e-\d\d +[▁-█]", r"frame +\d+\.\d+ m?s +[▁-█]", r"p2g +\d")
     s.do("run.panel knobz")
     s.wait(r"did\s+you\s+mean\s+'?knobs")
     s.do("run.panel knobs")

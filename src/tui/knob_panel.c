@@ -54,8 +54,6 @@ void knob_panel_go(knob_panel *panel, int index) {
 
 void knob_panel_arrange(knob_panel *panel, int count) {
     int kept = current_index(panel), component = panel->component;
-    char path[KNOB_PATH] = "";
-    if (kept >= 0 && kept < count) snprintf(path, sizeof path, "%s", panel->list[kept].path);
     panel->count = count < KNOB_LIMIT ? count : KNOB_LIMIT;
     panel->row_count = 0;
     for (int i = 0; i < panel->count; i++) {

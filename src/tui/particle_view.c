@@ -158,6 +158,7 @@ static view_ink choose_ink(const particle_view *view, const tui_theme *theme) {
 
 static status prepare(particle_view *view, const tui_theme *theme, tui_area area, const particle_points *points, report *r) {
     if (!view->old && view->cells_width == area.width && view->cells_height == area.height) return STATUS_OK;
+    if (strcmp(view->scaled, points->name ? points->name : "") != 0) follow_scale(view, points); /* another quantity, or the scale was let go */
     status failed = ensure_cells(view, area.width, area.height, r);
     if (failed == STATUS_OK) failed = ensure_values(view, points, r);
     if (failed == STATUS_OK)

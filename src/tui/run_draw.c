@@ -99,7 +99,11 @@ static void draw_panel(tui_app *app, run_state *state, tui_area area, run_panel 
         widget_pending(app, state, area);
         state->knobs_in_view = true;
         break;
-    case RUN_TIME: widget_stages(app, area, 0, area.height); break;
+    case RUN_TIME: {
+        int used = area.height >= 12 ? widget_pace(app, area, 0) : 0;
+        widget_stages(app, area, used, area.height - used);
+        break;
+    }
     case RUN_EVENTS: widget_events(app, area, 0, area.height); break;
     default: widget_panel(app, state, area); break;
     }

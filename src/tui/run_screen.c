@@ -81,11 +81,11 @@ static const tui_action actions[] = {
     {"look", {'i'}, "i", NULL, "look from the corner, the front, the side, the top", .handler = run_look, .argument = ARGUMENT_MAY, .asks = "corner|front|side|top"},
     {"reset", {'0'}, "0", NULL, "the camera as it was at the start", .handler = run_reset_camera},
     {"spin", {'a'}, "a", NULL, "let the camera turn by itself", .handler = run_spin},
-    {"cut", {'x'}, "x", "cut", "cut the body open across x, y, z, or not", .handler = run_cut, .argument = ARGUMENT_MAY, .asks = "x|y|z|off"},
+    {"cut", {'x'}, "x", NULL, "cut the body open across x, y, z, or not", .handler = run_cut, .argument = ARGUMENT_MAY, .asks = "x|y|z|off"},
     {"cut-in", {'('}, "(", NULL, "move the cut down its axis", .handler = run_cut_in},
     {"cut-out", {')'}, ")", NULL, "move the cut up its axis", .handler = run_cut_out},
     {"cut-flip", {'X'}, "X", NULL, "leave out the other side of the cut", .handler = run_cut_flip},
-    {"mode", {'m'}, "m", "mode", "particles as braille, blocks or ASCII", .handler = run_mode},
+    {"mode", {'m'}, "m", NULL, "particles as braille, blocks or ASCII", .handler = run_mode},
     {"colours", {'c'}, "c", NULL, "the next colour map", .handler = run_palette},
     {"histogram", {'n'}, "n", NULL, "histogram linear or logarithmic", .handler = run_histogram},
 };

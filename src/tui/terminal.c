@@ -121,6 +121,9 @@ static void set_modes(void) {
     intrflush(stdscr, FALSE);
     curs_set(0);
     set_escdelay(25);
+    /* What tmux, PuTTY and the Linux console send for these keys, whatever TERM says. */
+    define_key("\033[1~", KEY_HOME);
+    define_key("\033[4~", KEY_END);
 }
 
 static void close_output(void) {

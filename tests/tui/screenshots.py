@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Takes the pictures of the workbench in docs/pictures: opens it in tmux, does what a user would, draws what tmux captured.
 
-Usage: tests/tui/screenshots.py SUNDER [--out docs/pictures] [NAME ...]     from the root of the repository
+Usage: tests/tui/screenshots.py [--out docs/pictures] SUNDER [NAME ...]     from the root of the repository
 Needs tmux, python3-pil and fonts-dejavu-core. Each NAME is a function here; without names all of them are taken.
 """
 import argparse
@@ -16,62 +16,61 @@ import test_tui
 from test_tui import Failure, Screen
 
 SHOTS = {}
-SCENES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scenes")
+SCENES = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scenes"))
+TUBE = f"run {SCENES}/solid/tube_pull.lua --set particles=12000 --tui"
 
 
-def shot(width=120, height=36):
-    """Registers a function that brings a screen to where its picture is taken."""
+class Shot:
+    def __init__(self, function, width, height, start, library):
+        self.function, self.width, self.height, self.start, self.library = function, width, height, start, library
+
+
+def shot(width=120, height=36, start=TUBE, library=False):
+    """Registers a function that brings a screen to where its picture is taken. start: the program's arguments; library: the workbench opens
+    on its scenes, over a ledger of sixteen runs."""
     def register(function):
-        SHOTS[function.__name__] = (function, width, height)
+        SHOTS[function.__name__] = Shot(function, width, height, "" if library else start, library)
         return function
     return register
 
 
 def do(screen, text):
     screen.keys(":")
+    screen.wait(r"^:")
     screen.type(text)
     screen.keys("Enter")
-
-
-def run(scene, *settings, more=""):
-    given = " ".join(f"--set {setting}" for setting in settings)
-    return f"run {SCENES}/{scene} {given} --tui {more}"
 
 
 def until(screen, frame):
     screen.wait(r"frame +\d+/", "the run", patience=120)
     do(screen, f"run.run-to {frame}")
-    screen.wait(rf"frame +{frame}/", f"frame {frame}", patience=600)
+    screen.wait(rf"frame +{frame}/", f"frame {frame}", patience=900)
     screen.wait(r"paused *$", patience=60)
 
 
-TUBE = run("solid/tube_pull.lua", "particles=20000")
-
-
 @shot(160, 50)
-def run_screen(screen):
-    until(screen, 96)
+def workbench_run(screen):
+    until(screen, 90)
     do(screen, "run.mode")
-    screen.wait("Particles as blocks")
     do(screen, "run.histogram")
     do(screen, "run.knob eta")
 
 
 @shot(80, 24)
-def run_small(screen):
+def workbench_80x24(screen):
     until(screen, 90)
+    screen.keys("n")
 
 
 @shot(80, 24)
-def run_knobs(screen):
-    until(screen, 90)
-    do(screen, "run.panel knobs")
+def workbench_knobs(screen):
+    until(screen, 60)
     do(screen, "run.turn break_stretch=0.15")
     screen.wait("from the next frame on")
 
 
 @shot(120, 36)
-def run_cut(screen):
+def workbench_cut(screen):
     until(screen, 80)
     do(screen, "run.mode")
     do(screen, "run.cut z")
@@ -80,12 +79,13 @@ def run_cut(screen):
 
 
 @shot(140, 44)
-def compare(screen):
+def workbench_compare(screen):
     until(screen, 90)
     do(screen, "run.branch 60")
     screen.wait(r"frame +60/", patience=60)
     screen.wait(r"paused *$", patience=60)
     do(screen, "run.turn alpha=0")
+    screen.wait("alpha = 0 from")
     until(screen, 90)
     do(screen, "screen compare")
     screen.wait("particles by")
@@ -94,10 +94,36 @@ def compare(screen):
     screen.wait(r"frame 90 .*frame 90", patience=60)
 
 
-@shot(120, 36)
-def sheet(screen):
-    until(screen, 60)
+@shot(120, 36, start=f"run {SCENES}/sheet/paper_towel.lua --tui")
+def workbench_sheet(screen):
+    until(screen, 40)
     do(screen, "run.mode")
+
+
+@shot(120, 36, start="")
+def workbench_scenes(screen):
+    screen.wait(r"\[Scenes\]")
+    do(screen, "scenes.choose tube_pull")
+    screen.wait(r"effects ─", patience=60)
+    time.sleep(3)  # what it will cost is being measured
+
+
+@shot(100, 30)
+def workbench_console(screen):
+    until(screen, 30)
+    do(screen, "screen console")
+    screen.wait(r"\[Console\]")
+    for line in ("knob('eta')", "turn('eta', 0.2)", "measures().damage_max", "query('SELECT count(*) AS runs FROM runs')[1].runs", "help()"):
+        screen.type(line)
+        screen.keys("Enter")
+        time.sleep(0.5)
+
+
+@shot(100, 30)
+def workbench_help(screen):
+    until(screen, 10)
+    screen.keys("?")
+    screen.wait(r"^ *keys")
 
 
 # A library of sixteen runs for the screens of past runs: a sweep over two parameters.
@@ -108,8 +134,8 @@ SWEEP = """return require("sunder").sweep {{
 """
 
 
-@shot(140, 32)
-def runs(screen):
+@shot(140, 32, library=True)
+def workbench_runs(screen):
     do(screen, "screen runs")
     screen.wait("16 of 16 runs")
     do(screen, "runs.columns eta break_stretch broken_fraction damage_mean wall_s tags variant")
@@ -117,23 +143,23 @@ def runs(screen):
     screen.keys("Space", "Space", "Space")
 
 
-@shot(120, 36)
-def runs_plot(screen):
+@shot(120, 36, library=True)
+def workbench_plot(screen):
     do(screen, "screen runs")
     screen.wait("16 of 16 runs")
     screen.keys("Space", "Down", "Down", "Down", "Space", "Down", "Down", "Down", "Space")
     do(screen, "runs.plot broken_fraction")
 
 
-@shot(120, 32)
-def runs_diff(screen):
+@shot(120, 32, library=True)
+def workbench_diff(screen):
     do(screen, "screen runs")
     screen.wait("16 of 16 runs")
     screen.keys("Space", "Space", "Space", "d")
 
 
-@shot(100, 30)
-def runs_frames(screen):
+@shot(100, 30, library=True)
+def workbench_frames(screen):
     do(screen, "screen runs")
     screen.wait("16 of 16 runs")
     screen.keys("Enter")
@@ -141,16 +167,12 @@ def runs_frames(screen):
     do(screen, "runs.frame 30")
 
 
-@shot(100, 30)
-def sweep(screen):
+@shot(100, 30, library=True)
+def workbench_sweep(screen):
     do(screen, "screen sweep")
     do(screen, "sweep.choose tearing.lua")
     screen.wait("16 done")
     screen.keys("Right", "Down")
-
-
-LIBRARY = ("runs", "runs_plot", "runs_diff", "runs_frames", "sweep")
-ARGUMENTS = {"sheet": run("sheet/paper_towel.lua"), **{name: "" for name in LIBRARY}}
 
 
 def fill_library(sunder, home):
@@ -163,19 +185,21 @@ def fill_library(sunder, home):
 
 
 def take(sunder, name, out, library):
-    function, width, height = SHOTS[name]
+    chosen = SHOTS[name]
     test_tui.DEMO = sunder
-    with tempfile.TemporaryDirectory() as home:
-        if name in LIBRARY:
-            home = library
-        variables = f"export XDG_DATA_HOME={home} XDG_CONFIG_HOME={home};{f' cd {home};' if name in LIBRARY else ''}"
-        with Screen(f"{ARGUMENTS.get(name, TUBE)} --db {home}/ledger.db", width=width, height=height, variables=variables) as screen:
-            function(screen)
-            screen.wait(r"\S")
-            time.sleep(5)  # notices go
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as own:
+        home = library if chosen.library else own
+        variables = f"export XDG_DATA_HOME={home} XDG_CONFIG_HOME={home};{f' cd {home};' if chosen.library else ''}"
+        with Screen(f"{chosen.start} --db {home}/ledger.db", width=chosen.width, height=chosen.height, variables=variables) as screen:
+            if chosen.library:
+                screen.wait(r"\[Scenes\]")
+            chosen.function(screen)
+            time.sleep(6)  # notices go
             path = os.path.join(out, f"{name}.png")
-            terminal_picture.save(screen.text(True), width, height, path)
+            terminal_picture.save(screen.tmux("capture-pane", "-p", "-e", "-N"), chosen.width, chosen.height, path)
             print(path, flush=True)
+            screen.keys("Q")
+            screen.wait("^status", patience=60)  # the run has left its folder
 
 
 def main():
@@ -184,14 +208,13 @@ def main():
     parser.add_argument("--out", default="docs/pictures")
     parser.add_argument("names", nargs="*")
     options = parser.parse_args()
-    failed = 0
-    names = options.names or list(SHOTS)
-    with tempfile.TemporaryDirectory() as library:
-        if set(names) & set(LIBRARY):
-            fill_library(os.path.abspath(options.sunder), library)
+    sunder, names, failed = os.path.abspath(options.sunder), options.names or list(SHOTS), 0
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as library:
+        if any(name in SHOTS and SHOTS[name].library for name in names):
+            fill_library(sunder, library)
         for name in names:
             try:
-                take(os.path.abspath(options.sunder), name, options.out, library)
+                take(sunder, name, options.out, library)
             except (Failure, KeyError) as error:
                 failed += 1
                 print(f"{name}: {error}", file=sys.stderr)

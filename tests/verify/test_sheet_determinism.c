@@ -118,6 +118,11 @@ static void both_ends_agree(void) {
     }
     sheet_measures m = patch_measure(p);
     CHECK(count == 4 * SIDE * SIDE - 6 * SIDE + 2); /* 8-neighbour bonds of a square */
+    double shares[SIDE * SIDE], histogram[SHEET_BINS] = {0};
+    CHECK(p->engine->read(p->state, "broken", shares) == 1);
+    for (int i = 0; i < SIDE * SIDE; i++) histogram[shares[i] < 1 ? (int)(shares[i] * SHEET_BINS) : SHEET_BINS - 1] += 1;
+    CHECK(histogram[0] < SIDE * SIDE);
+    for (int i = 0; i < SHEET_BINS; i++) CHECK_NEAR(m.histogram[i], histogram[i] / (SIDE * SIDE), 1e-15);
     CHECK(m.bonds_total == count && m.bonds_broken == broken); /* measures halve the directed count: lost to rounding if ends disagreed */
     free(pairs);
     free(flags);

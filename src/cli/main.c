@@ -30,6 +30,7 @@ static const command commands[] = {
     {"render", "render RUN [--frame N] [--out FILE.png] [--width N] [--height N] [--yaw D] [--pitch D] [--zoom PERCENT]", "draw a frame", command_render},
     {"doctor", "doctor [--json]", "say what this machine and this build can do", command_doctor},
     {"bench", "bench step|sheet [--json] [--csv FILE] [--full] [--case NAME]… [--particles N] [--threads N] [--precision f32|f64] [--seconds S] [--repeat N]\n"
+              "         sheet also: [--against lammps]\n"
               "         bench table1 [--paper solid|sheet|both] [--row NAME]… [--frames N] [--warm N] [--paper-dt] [--scale F] [--time-limit S] [--threads N]\n"
               "                      [--precision f32|f64] [--scenes DIR] [--json]",
      "measure how fast steps are, beside what the machine could do; table1: seconds a frame, beside the papers'", command_bench},

@@ -265,7 +265,7 @@ static double bytes_per_particle(const sheet *s) {
     double lanes = (double)s->pack_count * PACK, slots = (double)s->slot_count * PACK, size = sizeof(real);
     double particle = (NODE + 3 + 1) * size + sizeof *s->id + 1 + (s->diffused_next ? size : 0) + (s->dilatation ? size + 8 : 0);
     double bond = sizeof *s->neighbour + size * (2 + (s->limit != NULL) + (s->history != NULL) + (s->conduct != NULL) + 2 * (s->coupling != NULL));
-    return (lanes * particle + slots * bond + (double)s->count * sizeof *s->place) / (double)s->count;
+    return (lanes * particle + slots * bond + (double)s->count * sizeof *s->place + sheet_rates_bytes(s)) / (double)s->count;
 }
 
 static void phases(const sheet *s, double seconds[SHEET_PHASES]) {

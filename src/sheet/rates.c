@@ -48,6 +48,15 @@ void sheet_rates_free(sheet *s) {
     s->rates = NULL;
 }
 
+double sheet_rates_bytes(const sheet *s) {
+    if (!s->rates) return 0;
+    rate_row rows[RATE_ROWS];
+    double bytes = sizeof *s->rates;
+    list_rows(s->rates, rows);
+    for (int i = 0; i < RATE_ROWS; i++) bytes += (double)(rows[i].count * rows[i].size);
+    return bytes;
+}
+
 /* The packs that a pack's bonds reach, without itself, ascending. Returns how many; counts beyond `limit` too. */
 enum { NEAR_LIMIT = 512 };
 

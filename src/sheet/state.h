@@ -193,6 +193,7 @@ void sheet_for_due(sheet *s, double dt, int part, void (*stage)(const pack_work 
 status sheet_rates_create(sheet *s, report *r);
 void sheet_rates_load(sheet *s, const sheet_network *n);
 void sheet_rates_free(sheet *s);
+double sheet_rates_bytes(const sheet *s);
 /* The longest step at which no pack's part of it exceeds its own limit. */
 double sheet_rates_limit(const sheet *s);
 /* θ has changed. */

@@ -27,6 +27,7 @@
 #define sheet_rates_create SHEET_VARIANT(sheet_rates_create)
 #define sheet_rates_load SHEET_VARIANT(sheet_rates_load)
 #define sheet_rates_free SHEET_VARIANT(sheet_rates_free)
+#define sheet_rates_bytes SHEET_VARIANT(sheet_rates_bytes)
 #define sheet_rates_limit SHEET_VARIANT(sheet_rates_limit)
 #define sheet_rates_feel SHEET_VARIANT(sheet_rates_feel)
 #define sheet_rates_choose SHEET_VARIANT(sheet_rates_choose)

@@ -19,8 +19,9 @@ def check(condition, text):
         print("  failed:", text)
 
 
-def call(*arguments):
-    done = subprocess.run([SUNDER, "bench", *arguments], capture_output=True, text=True, timeout=600)
+def call(*arguments, path=None):
+    environment = {**os.environ, "PATH": path} if path is not None else None
+    done = subprocess.run([SUNDER, "bench", *arguments], capture_output=True, text=True, timeout=600, env=environment)
     return done.returncode, done.stdout, done.stderr
 
 
@@ -85,6 +86,39 @@ def test_sheet():
         check(row["engine"] == "sheet" and row["particles"] == 2500 and 0.85 * row["neighbours"] < row["bonds"] / 2500 < row["neighbours"], f"sheet: {row}")
         rate = row["bonds"] * 1e9 / (row["ns_per_particle"] * row["particles"])
         check(abs(row["bond_steps_per_s"] / rate - 1) < 1e-6, "sheet: rates agree")
+
+
+# Stands for LAMMPS: it says what it would say if the sheet that it is given is the one that was asked for.
+LAMMPS = """#!/bin/sh
+[ "$1 $3 $4" = "-in -log none" ] || exit 1
+echo "LAMMPS (1 Jan 2000)"
+grep -q "^pair_style peri/pmb" "$2" && grep -q "^lattice sc 0.02" "$2" || { echo "ERROR: another sheet"; exit 1; }
+bonds=$(grep -q "^pair_coeff [*] [*] 1 0.0302" "$2" && echo 19404 || echo 65664)
+echo "  total # of bonds = $bonds"
+echo "Loop time of 9.9 on 1 procs for 10 steps with 2500 atoms"
+echo "Loop time of 0.5 on 1 procs for $(sed -n 's/^run //p' "$2" | tail -n 1) steps with 2500 atoms"
+"""
+
+
+def test_sheet_against_lammps():
+    asked = ("sheet", "--against", "lammps", "--json", "--particles", "2500", "--threads", "1", "--precision", "f64", "--seconds", "0.01", "--repeat", "1")
+    with tempfile.TemporaryDirectory() as folder:
+        code, out, err = call(*asked, path=folder)
+        check(code == 2 and out == "" and "lmp" in err and "package lammps" in err, f"without LAMMPS: {code} {err}")
+        program = os.path.join(folder, "lmp_serial")
+        with open(program, "w") as file:
+            file.write(LAMMPS)
+        os.chmod(program, 0o755)
+        code, out, err = call(*asked, path=folder + ":" + os.environ["PATH"])
+        check(code == 0, f"against LAMMPS: {err}")
+        rows = json.loads(out)["against"] if code == 0 else []
+        check([(r["neighbours"], r["bonds"], r["particles"]) for r in rows] == [(8, 19404, 2500), (28, 65664, 2500)], f"against LAMMPS: {rows}")
+        for row in rows:
+            check(abs(row["bond_steps_per_s"] / (row["bonds"] * row["steps"] / 0.5) - 1) < 1e-9 and row["program"] == "LAMMPS (1 Jan 2000)", f"against LAMMPS: {row}")
+        with open(program, "w") as file:
+            file.write("#!/bin/sh\necho 'ERROR: Unknown pair style peri/pmb'\n")
+        code, out, err = call(*asked, path=folder + ":" + os.environ["PATH"])
+        check(code != 0 and "Unknown pair style" in err, f"LAMMPS without peridynamics: {code} {err}")
 
 
 # Both papers' first tables, copied from the papers once more: particles, seconds (a frame; of sheets 20 steps), step, frames a second.
@@ -203,7 +237,7 @@ def test_table1_wrong_arguments():
 
 def test_wrong_arguments():
     for arguments, expected in ((["sheet", "--case", "elastic"], "belong to step"), ([], "expected"),
-                                (["steps"], "expected step"), (["--json", "table1"], "as its first argument"), (["step", "--case", "elastc"], "elastic"),
+                                (["steps"], "expected step"), (["sheet", "--against", "other"], "expected lammps"), (["step", "--against", "lammps"], "belongs to sheet"), (["--json", "table1"], "as its first argument"), (["step", "--case", "elastc"], "elastic"),
                                 (["step", "--precision", "f16"], "f32 or f64"), (["step", "--repeat", "0"], "whole number"),
                                 (["step", "--seconds", "x"], "a number"), (["step", "--particles", "3"], "whole number")):
         code, out, err = call(*arguments)

@@ -239,9 +239,15 @@ static bool strip_tears(strip *s) {
 static double strip_toughness(sheet_lattice lattice, double radius, int rows, bool trapping) {
     double G = 1e-3, expected = sqrt(2 * G / (9.0 / 8 * E)), factor = trapping ? 0.96 : 1.1;
     strip s = clamp_strip(lattice, radius, rows, G, factor * expected, trapping);
-    while (factor < 2.5 && !strip_tears(&s)) {
+    record_list whole = {0}; /* the state at rest: each strain is tried on a crack that has not moved (one that has crept needs up to a tenth more) */
+    report r;
+    for (bool tears = false; factor < 2.5; factor *= 1.01) {
+        CHECK(s.p->engine->save(s.p->state, &whole, &r) == STATUS_OK);
+        tears = strip_tears(&s);
+        if (!tears) CHECK(s.p->engine->restore(s.p->state, &whole, &r) == STATUS_OK);
+        record_clear(&whole);
+        if (tears) break;
         stretch_further(&s, 0.01 * factor * expected);
-        factor *= 1.01;
     }
     free_strip(&s);
     return factor * factor / 1.01; /* between the last that held and the first that tore */

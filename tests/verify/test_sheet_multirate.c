@@ -146,13 +146,13 @@ static patch *cracking_sheet(arena *memory) {
     for (int side = 0; side < 2; side++) {
         double near = side ? DX * (2 * ROWS - 2.5) : DX * 1.5, far = side ? 100 : -100;
         p->d.boundaries[side] = (rigid_boundary){.shape = shape_box(memory, (const double[]){-100, fmin(near, far), -100}, (const double[]){100, fmax(near, far), 100}),
-                                                 .grip = true, .motion = {.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .velocity = {0, side ? 0.12 : -0.12, 0}, .active = true}};
+                                                 .grip = true, .motion = {.rotation = {1, 0, 0, 0, 1, 0, 0, 0, 1}, .velocity = {0, side ? 0.03 : -0.03, 0}, .active = true}};
     }
     p->d.boundary_count = 2;
     for (int64_t i = 0; i < p->d.count; i++) {
         const double *x = p->rest[i];
         p->diffused[i] = hypot(x[0] - 2.6, x[1] - 0.3) < 0.15 ? 1 : 0;
-        p->velocity[i][1] = 0.24 * (x[1] - middle) / (2 * middle);
+        p->velocity[i][1] = 0.06 * (x[1] - middle) / (2 * middle);
         p->protected[i] = x[1] < 3 * DX || x[1] > 2 * middle - 3 * DX;
     }
     return p;

@@ -23,18 +23,13 @@ static void allow_drift(const solid *s, solid_block *b) {
     }
 }
 
-/* Whether some kernel of this state is four nodes wide. */
-static bool has_cubic(const solid *s) {
-    return s->definition.kernel == KERNEL_CUBIC || (s->transfers_damage && s->definition.laplacian == KERNEL_CUBIC);
-}
-
 /* First and last node that a block's kernels can touch. A cubic Laplacian beside a quadratic momentum kernel starts up to one node
  * earlier. */
 static void reach(const solid *s, const solid_block *b, int32_t low[3], int32_t high[3]) {
-    bool mixed = s->definition.kernel == KERNEL_QUADRATIC && has_cubic(s);
+    bool mixed = s->definition.kernel == KERNEL_QUADRATIC && kernels_have_cubic(s);
     for (int c = 0; c < 3; c++) {
         low[c] = b->base_low[c] - (mixed ? 1 : 0);
-        high[c] = b->base_high[c] + (has_cubic(s) ? 3 : 2);
+        high[c] = b->base_high[c] + (kernels_have_cubic(s) ? 3 : 2);
     }
 }
 
@@ -70,11 +65,12 @@ static status reserve_slots(solid *s, int32_t slots, report *r) {
     s->slot_coordinate = memory_allocate_array(fresh, sizeof *s->slot_coordinate);
     s->grid = memory_allocate_array(fresh, node_bytes);
     s->slot_results = memory_allocate_array(fresh, sizeof *s->slot_results);
+    s->slot_touched = memory_allocate_array(fresh, sizeof *s->slot_touched);
     if (s->transfers_damage) s->damage_grid = memory_allocate_array(fresh, damage_bytes);
     bool flip = s->definition.transfer == TRANSFER_FLIP;
     if (flip) s->old_grid = memory_allocate_array(fresh, node_bytes);
     s->slot_capacity = capacity;
-    if (!s->slot_coordinate || !s->grid || !s->slot_results || (s->transfers_damage && !s->damage_grid) ||
+    if (!s->slot_coordinate || !s->grid || !s->slot_results || !s->slot_touched || (s->transfers_damage && !s->damage_grid) ||
         (flip && !s->old_grid))
         return report_set(r, STATUS_SYSTEM, "out of memory for %d grid blocks", capacity);
     return STATUS_OK;
@@ -88,30 +84,10 @@ void grid_free(solid *s) {
     memory_free(s->grid, s->grid ? slots * BLOCK_NODES * NODE * sizeof(real) : 0);
     memory_free(s->old_grid, s->old_grid ? slots * BLOCK_NODES * NODE * sizeof(real) : 0);
     memory_free(s->slot_results, s->slot_results ? slots * sizeof *s->slot_results : 0);
+    memory_free((void *)s->slot_touched, s->slot_touched ? slots * sizeof *s->slot_touched : 0);
     memory_free(s->damage_grid, s->damage_grid ? slots * BLOCK_NODES * DAMAGE_NODE * sizeof(real) : 0);
-    s->slot_coordinate = NULL, s->grid = NULL, s->old_grid = NULL, s->slot_results = NULL, s->damage_grid = NULL;
+    s->slot_coordinate = NULL, s->grid = NULL, s->old_grid = NULL, s->slot_results = NULL, s->damage_grid = NULL, s->slot_touched = NULL;
     s->slot_capacity = 0;
-}
-
-/* Blocks of one colour never write to the same node: 8 colours, period two blocks, when kernels stay within −1 … 6 of their
- * block; 27 when they reach −2 … 7. */
-static void colour_blocks(solid *s) {
-    int period = has_cubic(s) ? 3 : 2, count = period * period * period;
-    int32_t fill[28] = {0};
-    s->colour_count = count;
-    memset(s->colour_start, 0, sizeof s->colour_start);
-    for (int pass = 0; pass < 2; pass++) {
-        for (int32_t b = 0; b < s->block_count; b++) {
-            const int32_t *c = s->blocks[b].coordinate;
-            int colour = 0;
-            for (int axis = 0; axis < 3; axis++) colour = colour * period + ((c[axis] % period) + period) % period;
-            if (pass == 0) s->colour_start[colour + 1]++;
-            else s->colour_blocks[fill[colour]++] = b;
-        }
-        if (pass == 1) break;
-        for (int i = 0; i < count; i++) s->colour_start[i + 1] += s->colour_start[i];
-        memcpy(fill, s->colour_start, sizeof fill);
-    }
 }
 
 status grid_build(solid *s, report *r) {
@@ -137,7 +113,7 @@ status grid_build(solid *s, report *r) {
             neighbour_offset(n, o);
             if (s->blocks[b].neighbour[n] == 0) s->blocks[b].neighbour[n] = order_rank(s, neighbour_key(&s->blocks[b], o));
         }
-    colour_blocks(s);
+    colours_assign(s);
     s->constraint.mapped = false;
     return STATUS_OK;
 }

@@ -45,13 +45,13 @@ SIMD_INLINE int scatter_run(const real *records, int p, int count, int nodes, co
         for (int j = 0; j < nodes; j++) sum[i * nodes + j] = row_load(first + (i * STRIDE_X + j * STRIDE_Y) * NODE);
     for (; p < count && records[p * RECORD + P2G_NODE] == node; p++) {
         const real *r = records + p * RECORD;
-        node_row along_y = row_repeat(r + P2G_Y), along_x = row_repeat(r + P2G_X), weight = row_spread(r + P2G_WZ);
-        node_row value = row_fma(row_repeat(r + P2G_Z), node_offset, row_repeat(r + P2G_BASE));
+        node_row weight = row_spread(r + P2G_WZ), along_x = row_multiply(weight, row_repeat(r + P2G_X)), along_y = row_multiply(weight, row_repeat(r + P2G_Y));
+        node_row value = row_multiply(weight, row_fma(row_repeat(r + P2G_Z), node_offset, row_repeat(r + P2G_BASE)));
         for (int i = 0; i < nodes; i++) {
-            node_row weight_x = row_scale(weight, r[P2G_WX + i]), here = value;
+            node_row here = row_scale(value, r[P2G_WX + i]), slope = row_scale(along_y, r[P2G_WX + i]);
             for (int j = 0; j < nodes; j++) {
-                sum[i * nodes + j] = row_fma(row_scale(weight_x, r[P2G_WY + j]), here, sum[i * nodes + j]);
-                here = row_add(here, along_y);
+                sum[i * nodes + j] = row_scale_add(here, r[P2G_WY + j], sum[i * nodes + j]);
+                here = row_add(here, slope);
             }
             value = row_add(value, along_x);
         }
@@ -79,14 +79,12 @@ SIMD_INLINE void gather_particle(real *r, int nodes, const node_row node_offset,
         along_x = row_scale_add(sum, weight * ((real)i - r[G2P_OFFSET + 0]), along_x);
         along_y = row_scale_add(moment, weight, along_y);
     }
-    node_row weight_z = row_spread(r + G2P_WZ), zero = {0};
+    node_row weight_z = row_spread(r + G2P_WZ);
     const real z[4] = {r[G2P_OFFSET + 2], r[G2P_OFFSET + 2], r[G2P_OFFSET + 2], r[G2P_OFFSET + 2]};
     node_row distance_z = row_scale_add(row_repeat(z), -1, node_offset);
-    node_row weighted = row_fma(plain, weight_z, zero);
-    row_fold(weighted, r + G2P_OUT);
-    row_fold(row_fma(along_x, weight_z, zero), r + G2P_OUT + 4);
-    row_fold(row_fma(along_y, weight_z, zero), r + G2P_OUT + 8);
-    row_fold(row_fma(weighted, distance_z, zero), r + G2P_OUT + 12);
+    node_row weighted = row_multiply(plain, weight_z);
+    const node_row moments[4] = {weighted, row_multiply(along_x, weight_z), row_multiply(along_y, weight_z), row_multiply(weighted, distance_z)};
+    row_fold(moments, r + G2P_OUT);
 }
 
 #endif

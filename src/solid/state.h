@@ -15,6 +15,8 @@
 #include "solid/solid.h"
 #include "solid/variant.h"
 
+#include <stdatomic.h>
+
 enum {
     PACK = 16,
     PACK_PARTS = PACK / VEC_LANES,
@@ -54,6 +56,7 @@ typedef struct solid_block {
     int32_t first_tile, tile_count;
     int32_t base_low[3], base_high[3]; /* first kernel nodes that a particle may have before the next sort */
     int32_t neighbour[NEIGHBOURS]; /* grid slots of the blocks around (x slowest); −1 where no kernel can reach */
+    uint8_t turn[NEIGHBOURS];      /* how many blocks of lower colours touch that slot */
 } solid_block;
 
 /* What a tile's stages leave for the pass that follows them: all [TILE_PACKS][…][PACK]. */
@@ -175,6 +178,7 @@ struct solid {
     int32_t colour_start[28]; /* blocks of colour c are colour_blocks[colour_start[c] … colour_start[c+1]) */
     int colour_count;
     int32_t *colour_blocks; // [colour_capacity]
+    _Atomic int32_t *slot_touched; // [slot_capacity], blocks that have written to a slot in this pass by colours
 
     int32_t slot_count, slot_capacity;
     int32_t (*slot_coordinate)[3]; // [slot_capacity], in blocks, sorted
@@ -269,6 +273,11 @@ SIMD_INLINE double scale_of(const solid *s, int field, int32_t pack, int lane) {
     return field <= 0 ? 1 : (double)field_at(&s->fields[field], pack, 0, 0)[lane];
 }
 
+/* Whether some kernel of this state is four nodes wide. */
+static inline bool kernels_have_cubic(const solid *s) {
+    return s->definition.kernel == KERNEL_CUBIC || (s->transfers_damage && s->definition.laplacian == KERNEL_CUBIC);
+}
+
 /* particles.c */
 status particles_reserve(solid *s, int32_t packs, report *r);
 status particles_load(solid *s, report *r);
@@ -281,6 +290,11 @@ status grid_build(solid *s, report *r);
 void grid_free(solid *s);
 void grid_update(solid *s, real dt);
 void grid_collect_results(solid *s); /* adds what the slots' boundaries did to the totals */
+/* colours.c: calls pass(context, block, next, worker) once for each block, `next` being the block that the same worker probably takes then
+ * (−1: none). Blocks that share nodes go in the order of their colours, so sums into nodes have one order; others do not wait. */
+typedef void coloured_pass(void *context, int32_t block, int32_t next, int worker);
+void colours_assign(solid *s);
+void colours_pass(solid *s, coloured_pass *pass, void *context);
 /* transfer.c */
 void transfer_to_grid(solid *s, real dt);
 void transfer_to_particles(solid *s, real dt);

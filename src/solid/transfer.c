@@ -16,9 +16,43 @@
 
 typedef struct transfer_context {
     solid *state;
-    const int32_t *blocks; /* of one colour, for the way to the grid */
     real dt;
 } transfer_context;
+
+/* The packs of a block, and of the one that comes next, so that they are on their way to the cache when their turn comes. */
+typedef struct pack_stream {
+    const solid *state;
+    int32_t first, count, next_first, next_count;
+} pack_stream;
+
+static int32_t block_packs(const solid *s, int32_t block, int32_t *first) {
+    if (block < 0) return *first = 0;
+    const solid_block *b = &s->blocks[block];
+    const solid_tile *last = &s->tiles[b->first_tile + b->tile_count - 1];
+    *first = s->tiles[b->first_tile].first_pack;
+    return last->first_pack + last->pack_count - *first;
+}
+
+static pack_stream stream_packs(const solid *s, int32_t block, int32_t next) {
+    pack_stream stream = {.state = s};
+    stream.count = block_packs(s, block, &stream.first);
+    stream.next_count = block_packs(s, next, &stream.next_first);
+    return stream;
+}
+
+enum { CACHE_LINE = 64 };
+
+/* Calls for the pack that comes a tile's length after this one. */
+SIMD_INLINE void read_ahead(const pack_stream *stream, int32_t pack) {
+    int32_t ahead = pack - stream->first + TILE_PACKS;
+    if (ahead >= stream->count + stream->next_count) return;
+    pack = ahead < stream->count ? stream->first + ahead : stream->next_first + ahead - stream->count;
+    for (int i = 0; i < stream->state->field_count; i++) {
+        const solid_field *f = &stream->state->fields[i];
+        const char *at = (const char *)field_at(f, pack, 0, 0), *end = at + f->components * PACK * (int)sizeof(real);
+        for (; at < end; at += CACHE_LINE) __builtin_prefetch(at, 0, 2);
+    }
+}
 
 /* Momentum records: base value at the kernel's first node and its slope along each axis; `forces` 0 leaves the stress out. */
 SIMD_INLINE void momentum_records(const tile_work *w, kernel_kind kernel, real density, real forces) {
@@ -53,10 +87,13 @@ SIMD_INLINE void momentum_records(const tile_work *w, kernel_kind kernel, real d
         }
 }
 
-SIMD_INLINE void scatter_momentum(const tile_work *w, int nodes, real *window) {
+SIMD_INLINE void scatter_momentum(const tile_work *w, const pack_stream *stream, int nodes, real *window) {
     const real offsets[4] = {0, 1, 2, 3};
     node_row node_offset = row_spread(offsets);
-    for (int p = 0; p < w->tile->count;) p = scatter_run(w->scratch->records, p, w->tile->count, nodes, node_offset, window);
+    for (int k = 0, p = 0; k < w->tile->pack_count; k++) {
+        read_ahead(stream, w->tile->first_pack + k);
+        while (p < w->tile->count && p < (k + 1) * PACK) p = scatter_run(w->scratch->records, p, w->tile->count, nodes, node_offset, window);
+    }
 }
 
 /* Slots of a particle's record for the damage channel: four w_z d beside four w_z; the other weights and curvatures; the first node. */
@@ -156,12 +193,14 @@ static tile_work begin_tile(solid *s, int32_t t, int worker, real dt) {
     return w;
 }
 
-SIMD_INLINE void block_to_grid(transfer_context *t, int32_t block_index, int worker, kernel_kind kernel, kernel_kind laplacian, bool damage) {
+SIMD_INLINE void block_to_grid(const transfer_context *t, int32_t block_index, int32_t next, int worker, kernel_kind kernel, kernel_kind laplacian, bool damage) {
     solid *s = t->state;
     const solid_block *b = &s->blocks[block_index];
     solid_worker *own = &s->workers[worker];
     bool wide = kernels_are_wide(kernel, laplacian, damage);
     int nodes = kernel == KERNEL_QUADRATIC ? 3 : 4;
+    pack_stream stream = stream_packs(s, block_index, next);
+    exchange_rows(b, own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, ROW_PREFETCH);
     memset(own->window, 0, sizeof own->window);
     if (s->old_grid) memset(own->old_window, 0, sizeof own->old_window);
     if (damage) memset(own->damage_window, 0, sizeof own->damage_window);
@@ -172,10 +211,10 @@ SIMD_INLINE void block_to_grid(transfer_context *t, int32_t block_index, int wor
         real density = (real)s->definition.materials[w.tile->material].density;
         if (s->old_grid) {
             momentum_records(&w, kernel, density, 0);
-            scatter_momentum(&w, nodes, own->old_window);
+            scatter_momentum(&w, &stream, nodes, own->old_window);
         }
         momentum_records(&w, kernel, density, 1);
-        scatter_momentum(&w, nodes, own->window);
+        scatter_momentum(&w, &stream, nodes, own->window);
         if (damage && s->material_damaged[w.tile->material])
             scatter_damage(&w, laplacian, laplacian == KERNEL_QUADRATIC ? 3 : 4, own->damage_window);
     }
@@ -187,6 +226,8 @@ SIMD_INLINE void block_to_grid(transfer_context *t, int32_t block_index, int wor
 }
 
 /* ---- grid to particles ------------------------------------------------------------------------------------------- */
+
+enum { G2P_CHUNK = 2 /* blocks that a worker takes at once */ };
 
 SIMD_INLINE void gather_weights(const tile_work *w, kernel_kind kernel) {
     real *records = w->scratch->records;
@@ -204,9 +245,13 @@ SIMD_INLINE void gather_weights(const tile_work *w, kernel_kind kernel) {
         }
 }
 
-SIMD_INLINE void gather_tile(const tile_work *w, kernel_kind kernel, const node_row node_offset, const real *window) {
-    for (int p = 0; p < w->tile->count; p++)
-        gather_particle(w->scratch->records + p * RECORD, kernel == KERNEL_QUADRATIC ? 3 : 4, node_offset, window);
+SIMD_INLINE void gather_tile(const tile_work *w, const pack_stream *stream, kernel_kind kernel, const node_row node_offset, const real *window) {
+    for (int k = 0; k < w->tile->pack_count; k++) {
+        int end = (k + 1) * PACK < w->tile->count ? (k + 1) * PACK : w->tile->count;
+        read_ahead(stream, w->tile->first_pack + k);
+        for (int p = k * PACK; p < end; p++)
+            gather_particle(w->scratch->records + p * RECORD, kernel == KERNEL_QUADRATIC ? 3 : 4, node_offset, window);
+    }
     for (int p = w->tile->count; p < w->tile->pack_count * PACK; p++)
         memset(w->scratch->records + p * RECORD + G2P_OUT, 0, 16 * sizeof(real));
 }
@@ -356,17 +401,20 @@ static void limit_momentum(tile_work *w) {
     w->result->limit[EFFECT_elastic] = vec_largest(fastest) * (real)(1 / s->definition.dx);
 }
 
-SIMD_INLINE void block_to_particles(transfer_context *t, int32_t block_index, int worker, kernel_kind kernel, kernel_kind laplacian, bool damage) {
+SIMD_INLINE void block_to_particles(const transfer_context *t, int32_t block_index, int worker, kernel_kind kernel, kernel_kind laplacian, bool damage) {
     solid *s = t->state;
     const solid_block *b = &s->blocks[block_index];
     solid_worker *own = &s->workers[worker];
     bool wide = kernels_are_wide(kernel, laplacian, damage);
     const real offsets[4] = {0, 1, 2, 3};
     node_row node_offset = row_spread(offsets);
+    bool follows = block_index + 1 < s->block_count && (s->threads == 1 || (block_index + 1) % G2P_CHUNK != 0);
+    pack_stream stream = stream_packs(s, block_index, follows ? block_index + 1 : -1);
     exchange_window(b, own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, false);
     if (s->old_grid) exchange_window(b, own->old_window, s->old_grid, NODE, BLOCK_NODES * NODE, wide, false);
     if (damage) exchange_window(b, own->damage_window, s->damage_grid, 1, BLOCK_NODES * DAMAGE_NODE, wide, false);
     if (damage && s->implicit_on) implicit_load_window(s, b, own->implicit_window);
+    if (follows) exchange_rows(&s->blocks[block_index + 1], own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, ROW_PREFETCH);
     for (int32_t i = b->first_tile; i < b->first_tile + b->tile_count; i++) {
         tile_work w = {.state = s, .tile = &s->tiles[i], .scratch = &own->tile, .result = &s->tile_results[i], .dt = t->dt};
         memset(w.result, 0, sizeof *w.result);
@@ -376,10 +424,10 @@ SIMD_INLINE void block_to_particles(transfer_context *t, int32_t block_index, in
             gather_laplacian(&w, laplacian, laplacian == KERNEL_QUADRATIC ? 3 : 4, own->damage_window);
         gather_weights(&w, kernel);
         if (s->old_grid) {
-            gather_tile(&w, kernel, node_offset, own->old_window);
+            gather_tile(&w, &stream, kernel, node_offset, own->old_window);
             keep_old_velocity(&w);
         }
-        gather_tile(&w, kernel, node_offset, own->window);
+        gather_tile(&w, &stream, kernel, node_offset, own->window);
         advance_particles(&w, kernel);
         CALL_STAGE(&w, update);
         limit_momentum(&w);
@@ -389,10 +437,10 @@ SIMD_INLINE void block_to_particles(transfer_context *t, int32_t block_index, in
 /* ---- one instance a combination of kernels ----------------------------------------------------------------------- */
 
 #define INSTANCE(name, kernel, laplacian, damage)                                                                      \
-    static void p2g_##name(void *t, int64_t i, int worker) {                                                           \
+    static void p2g_##name(void *t, int32_t block, int32_t next, int worker) {                                         \
         transfer_context *c = t;                                                                                       \
-        double start = start_look(c->state, i, worker, PASS_P2G);                                                      \
-        block_to_grid(c, c->blocks[i], worker, kernel, laplacian, damage);                                             \
+        double start = start_look(c->state, block, worker, PASS_P2G);                                                  \
+        block_to_grid(c, block, next, worker, kernel, laplacian, damage);                                              \
         end_look(c->state, worker, PASS_P2G, start);                                                                   \
     }                                                                                                                  \
     static void g2p_##name(void *t, int64_t i, int worker) {                                                           \
@@ -409,10 +457,9 @@ INSTANCE(quadratic_cubic, KERNEL_QUADRATIC, KERNEL_CUBIC, true)
 INSTANCE(cubic_cubic, KERNEL_CUBIC, KERNEL_CUBIC, true)
 INSTANCE(cubic_quadratic, KERNEL_CUBIC, KERNEL_QUADRATIC, true)
 
-typedef void block_pass(void *context, int64_t i, int worker);
-static block_pass *const to_grid[2][3] = {{p2g_quadratic, p2g_quadratic_quadratic, p2g_quadratic_cubic},
+static coloured_pass *const to_grid[2][3] = {{p2g_quadratic, p2g_quadratic_quadratic, p2g_quadratic_cubic},
                                           {p2g_cubic, p2g_cubic_quadratic, p2g_cubic_cubic}};
-static block_pass *const to_particles[2][3] = {{g2p_quadratic, g2p_quadratic_quadratic, g2p_quadratic_cubic},
+static void (*const to_particles[2][3])(void *, int64_t, int) = {{g2p_quadratic, g2p_quadratic_quadratic, g2p_quadratic_cubic},
                                                {g2p_cubic, g2p_cubic_quadratic, g2p_cubic_cubic}};
 
 static int damage_instance(const solid *s) {
@@ -432,17 +479,12 @@ void transfer_to_grid(solid *s, real dt) {
     parallel_for(s->threads, s->slot_count, 64, clear_slot, s);
     s->looks++;
     transfer_context t = {.state = s, .dt = dt};
-    block_pass *pass = to_grid[s->definition.kernel == KERNEL_CUBIC][damage_instance(s)];
-    for (int colour = 0; colour < s->colour_count; colour++) {
-        t.blocks = s->colour_blocks + s->colour_start[colour];
-        parallel_for(s->threads, s->colour_start[colour + 1] - s->colour_start[colour], 1, pass, &t);
-    }
+    colours_pass(s, to_grid[s->definition.kernel == KERNEL_CUBIC][damage_instance(s)], &t);
 }
 
 void transfer_to_particles(solid *s, real dt) {
     transfer_context t = {.state = s, .dt = dt};
-    block_pass *pass = to_particles[s->definition.kernel == KERNEL_CUBIC][damage_instance(s)];
-    parallel_for(s->threads, s->block_count, 2, pass, &t);
+    parallel_for(s->threads, s->block_count, G2P_CHUNK, to_particles[s->definition.kernel == KERNEL_CUBIC][damage_instance(s)], &t);
 }
 
 static void limit_tile(void *context, int64_t i, int worker) {

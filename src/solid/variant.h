@@ -44,6 +44,8 @@
 #define grid_free SOLID_VARIANT(grid_free)
 #define grid_update SOLID_VARIANT(grid_update)
 #define grid_collect_results SOLID_VARIANT(grid_collect_results)
+#define colours_assign SOLID_VARIANT(colours_assign)
+#define colours_pass SOLID_VARIANT(colours_pass)
 #define constraint_reserve SOLID_VARIANT(constraint_reserve)
 #define constraint_free SOLID_VARIANT(constraint_free)
 #define constraint_bytes SOLID_VARIANT(constraint_bytes)

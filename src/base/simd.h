@@ -184,6 +184,34 @@ SIMD_INLINE void vec8_load(vec8 *to, const real *from) {
     memcpy(to, from, sizeof *to);
 }
 
+/* sum += scale · a, fused where vec_fma is. */
+SIMD_INLINE void vec4_add_scaled(vec4 *sum, const vec4 *a, real scale) {
+#if SUNDER_SIMD > 0 && SUNDER_PRECISION == 32
+    *sum = _mm_fmadd_ps(*a, _mm_set1_ps(scale), *sum);
+#elif SUNDER_SIMD > 0
+    *sum = _mm256_fmadd_pd(*a, _mm256_set1_pd(scale), *sum);
+#else
+    *sum += *a * scale;
+#endif
+}
+
+SIMD_INLINE void vec8_add_scaled(vec8 *sum, const vec8 *a, real scale) {
+#if SUNDER_SIMD > 0 && SUNDER_PRECISION == 32
+    *sum = _mm256_fmadd_ps(*a, _mm256_set1_ps(scale), *sum);
+#elif SUNDER_SIMD == 2
+    *sum = _mm512_fmadd_pd(*a, _mm512_set1_pd(scale), *sum);
+#else
+    *sum += *a * scale;
+#endif
+}
+
+/* out[0 … 2] = the sums (0 + 2) + (1 + 3) of the lanes of three. */
+SIMD_INLINE void vec4_sums(const vec4 *a, const vec4 *b, const vec4 *c, vec4 *out) {
+    vec4 ab = __builtin_shufflevector(*a, *b, 0, 4, 1, 5) + __builtin_shufflevector(*a, *b, 2, 6, 3, 7);
+    vec4 cc = __builtin_shufflevector(*c, *c, 0, 4, 1, 5) + __builtin_shufflevector(*c, *c, 2, 6, 3, 7);
+    *out = __builtin_shufflevector(ab, cc, 0, 1, 4, 5) + __builtin_shufflevector(ab, cc, 2, 3, 6, 7);
+}
+
 /* ---- rows: four nodes of four reals, for the transfers ----------------------------------------------------------- */
 
 enum { ROW = 16, ROW_PARTS = ROW / VEC_LANES };

@@ -87,6 +87,7 @@ void solid_constants_refresh(solid *s) {
                 effects[e]->stages->constants(material->effects, &s->definition, material->protects, s->constants[m][e]);
             if (effects[e]->stages->declare) effects[e]->stages->declare(s, m, material->effects);
         }
+        s->explicit_on |= s->material_damaged[m] && !s->material_implicit[m];
     }
 }
 
@@ -278,7 +279,7 @@ static double bytes_per_particle(const solid *s) {
     double bytes = (double)s->pack_capacity * PACK * sizeof *s->id;
     for (int i = 0; i < s->field_count; i++) bytes += (double)s->pack_capacity * s->fields[i].components * PACK * sizeof(real);
     double sort_bytes = (double)s->count * (2 * sizeof *s->sort_keys + sizeof *s->permute);
-    double node_reals = NODE + (s->damage_grid ? DAMAGE_NODE : 0) + (s->old_grid ? NODE : 0) + (s->implicit_grid ? 9 : 0);
+    double node_reals = NODE + (s->damage_grid ? DAMAGE_NODE : 0) + (s->old_grid ? NODE : 0) + (s->implicit_grid ? IMPLICIT_PLANES : 0);
     double grid_bytes = (double)s->slot_capacity * BLOCK_NODES * node_reals * sizeof(real);
     grid_bytes += constraint_bytes(s);
     double tables = (double)s->tile_capacity * (sizeof *s->tiles + sizeof *s->tile_results) +

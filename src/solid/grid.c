@@ -66,11 +66,11 @@ static status reserve_slots(solid *s, int32_t slots, report *r) {
     s->grid = memory_allocate_array(fresh, node_bytes);
     s->slot_results = memory_allocate_array(fresh, sizeof *s->slot_results);
     s->slot_touched = memory_allocate_array(fresh, sizeof *s->slot_touched);
-    if (s->transfers_damage) s->damage_grid = memory_allocate_array(fresh, damage_bytes);
+    if (s->explicit_on) s->damage_grid = memory_allocate_array(fresh, damage_bytes);
     bool flip = s->definition.transfer == TRANSFER_FLIP;
     if (flip) s->old_grid = memory_allocate_array(fresh, node_bytes);
     s->slot_capacity = capacity;
-    if (!s->slot_coordinate || !s->grid || !s->slot_results || !s->slot_touched || (s->transfers_damage && !s->damage_grid) ||
+    if (!s->slot_coordinate || !s->grid || !s->slot_results || !s->slot_touched || (s->explicit_on && !s->damage_grid) ||
         (flip && !s->old_grid))
         return report_set(r, STATUS_SYSTEM, "out of memory for %d grid blocks", capacity);
     return STATUS_OK;
@@ -140,7 +140,7 @@ static void update_slot(void *context, int64_t slot, int worker) {
     real *nodes = s->grid + slot * BLOCK_NODES * NODE;
     to_velocity(nodes);
     if (s->old_grid) to_velocity(s->old_grid + slot * BLOCK_NODES * NODE);
-    if (s->transfers_damage) {
+    if (s->damage_grid) {
         real *d = s->damage_grid + slot * BLOCK_NODES * DAMAGE_NODE, *weight = d + BLOCK_NODES;
         for (int n = 0; n < BLOCK_NODES; n++) d[n] = weight[n] > 0 ? d[n] / weight[n] : 0;
     }

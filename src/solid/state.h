@@ -32,7 +32,8 @@ enum {
     NEIGHBOURS = 27,
     CONSTANTS = 16,      /* reals an effect may derive from a material's values */
     EFFECT_FIELDS = 16,
-    IMPLICIT_WINDOWS = 4, /* planes of nodes that a solve on the grid scatters together */
+    IMPLICIT_WINDOWS = 4, /* reals a node that a solve on the grid scatters together */
+    IMPLICIT_PLANES = 8,  /* reals a node that the implicit solve keeps */
 };
 
 /* The particle fields that the engine itself keeps; effects' fields follow. */
@@ -81,8 +82,8 @@ typedef struct solid_worker {
     real window[WINDOW_NODES * NODE];
     real old_window[WINDOW_NODES * NODE]; // FLIP only
     real damage_window[WINDOW_NODES * DAMAGE_NODE];
-    real implicit_window[WINDOW_NODES * IMPLICIT_WINDOWS]; // what is solved for on the grid: planes
     pass_clock clocks[PASSES];
+    real implicit_window[WINDOW_NODES * IMPLICIT_WINDOWS]; // of what is solved for on the grid
 } solid_worker;
 
 /* What the implicit solve needs of a material. */
@@ -155,12 +156,13 @@ struct solid {
     uint32_t material_mask[SOLID_MATERIALS];
     bool transfers_damage; /* some material has the damage effect */
     bool implicit_on;      /* some material's damage is implicit */
+    bool explicit_on;      /* some material's is not: the grid carries the damage channel */
     bool material_damaged[SOLID_MATERIALS], material_implicit[SOLID_MATERIALS]; /* by whichever damage model */
     implicit_material implicit_materials[SOLID_MATERIALS];
     double implicit_tolerance;
     int64_t implicit_solves, implicit_iterations;
     int32_t implicit_capacity;
-    real *implicit_grid;   // [implicit_capacity] planes of nodes, implicit.c
+    real *implicit_grid;   // [implicit_capacity][IMPLICIT_PLANES][BLOCK_NODES], implicit.c
     double *implicit_sums; // [implicit_capacity][2]
     fibre_constraint constraint;
 
@@ -184,7 +186,7 @@ struct solid {
     int32_t (*slot_coordinate)[3]; // [slot_capacity], in blocks, sorted
     real *grid;                    // [slot_capacity][BLOCK_NODES][NODE]
     real *old_grid;                // the same before forces, NULL unless the transfer is FLIP
-    real *damage_grid;             // [slot_capacity][BLOCK_NODES][DAMAGE_NODE], NULL unless damage is on
+    real *damage_grid;             // [slot_capacity][BLOCK_NODES][DAMAGE_NODE], NULL unless some damage is explicit
 
     /* sorting: kept between sorts, grown when needed */
     uint64_t *sort_keys, *sort_keys2; // [count]

@@ -129,7 +129,7 @@ SIMD_INLINE int scatter_damage_run(const real *records, int p, int count, int no
         vec8_load(&row, r + DAMAGE_ROW);
         for (int i = 0; i < nodes; i++) {
             vec8 here = row * r[DAMAGE_WX + i];
-            for (int j = 0; j < nodes; j++) sum[i * nodes + j] += here * r[DAMAGE_WY + j];
+            for (int j = 0; j < nodes; j++) vec8_add_scaled(&sum[i * nodes + j], &here, r[DAMAGE_WY + j]);
         }
     }
     for (int i = 0; i < nodes; i++)
@@ -203,7 +203,8 @@ SIMD_INLINE void block_to_grid(const transfer_context *t, int32_t block_index, i
     exchange_rows(b, own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, ROW_PREFETCH);
     memset(own->window, 0, sizeof own->window);
     if (s->old_grid) memset(own->old_window, 0, sizeof own->old_window);
-    if (damage) memset(own->damage_window, 0, sizeof own->damage_window);
+    bool channel = damage && s->damage_grid;
+    if (channel) memset(own->damage_window, 0, sizeof own->damage_window);
     for (int32_t i = b->first_tile; i < b->first_tile + b->tile_count; i++) {
         tile_work w = begin_tile(s, i, worker, t->dt);
         fill(w.scratch->kirchhoff, w.tile->pack_count * 6 * PACK, 0);
@@ -215,12 +216,12 @@ SIMD_INLINE void block_to_grid(const transfer_context *t, int32_t block_index, i
         }
         momentum_records(&w, kernel, density, 1);
         scatter_momentum(&w, &stream, nodes, own->window);
-        if (damage && s->material_damaged[w.tile->material])
+        if (channel && s->material_damaged[w.tile->material])
             scatter_damage(&w, laplacian, laplacian == KERNEL_QUADRATIC ? 3 : 4, own->damage_window);
     }
     exchange_window(b, own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, true);
     if (s->old_grid) exchange_window(b, own->old_window, s->old_grid, NODE, BLOCK_NODES * NODE, wide, true);
-    if (!damage) return;
+    if (!channel) return;
     exchange_window(b, own->damage_window, s->damage_grid, 1, BLOCK_NODES * DAMAGE_NODE, wide, true);
     exchange_window(b, own->damage_window + WINDOW_NODES, s->damage_grid + BLOCK_NODES, 1, BLOCK_NODES * DAMAGE_NODE, wide, true);
 }
@@ -412,7 +413,7 @@ SIMD_INLINE void block_to_particles(const transfer_context *t, int32_t block_ind
     pack_stream stream = stream_packs(s, block_index, follows ? block_index + 1 : -1);
     exchange_window(b, own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, false);
     if (s->old_grid) exchange_window(b, own->old_window, s->old_grid, NODE, BLOCK_NODES * NODE, wide, false);
-    if (damage) exchange_window(b, own->damage_window, s->damage_grid, 1, BLOCK_NODES * DAMAGE_NODE, wide, false);
+    if (damage && s->damage_grid) exchange_window(b, own->damage_window, s->damage_grid, 1, BLOCK_NODES * DAMAGE_NODE, wide, false);
     if (damage && s->implicit_on) implicit_load_window(s, b, own->implicit_window);
     if (follows) exchange_rows(&s->blocks[block_index + 1], own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, ROW_PREFETCH);
     for (int32_t i = b->first_tile; i < b->first_tile + b->tile_count; i++) {

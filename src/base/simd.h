@@ -184,6 +184,31 @@ SIMD_INLINE void vec8_load(vec8 *to, const real *from) {
     memcpy(to, from, sizeof *to);
 }
 
+SIMD_INLINE void vec4_store(real *to, const vec4 *from) {
+    memcpy(to, from, sizeof *from);
+}
+
+SIMD_INLINE void vec8_store(real *to, const vec8 *from) {
+    memcpy(to, from, sizeof *from);
+}
+
+/* ababab… of a pair; aabbccdd of four. */
+SIMD_INLINE void vec8_pairs(vec8 *to, const real *pair) {
+#if SUNDER_SIMD > 0 && SUNDER_PRECISION == 32
+    *to = _mm256_castpd_ps(_mm256_broadcast_sd((const double *)(const void *)pair));
+#elif SUNDER_SIMD == 2
+    *to = _mm512_broadcast_f64x2(_mm_loadu_pd(pair));
+#else
+    for (int i = 0; i < 8; i++) (*to)[i] = pair[i % 2];
+#endif
+}
+
+SIMD_INLINE void vec8_doubled(vec8 *to, const real *four) {
+    vec4 v;
+    vec4_load(&v, four);
+    *to = __builtin_shufflevector(v, v, 0, 0, 1, 1, 2, 2, 3, 3);
+}
+
 /* sum += scale · a, fused where vec_fma is. */
 SIMD_INLINE void vec4_add_scaled(vec4 *sum, const vec4 *a, real scale) {
 #if SUNDER_SIMD > 0 && SUNDER_PRECISION == 32

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "base/threads.h"
 #include "solid/inextensible.h"
+#include "solid/kernels.h"
 #include "solid/order.h"
 
 #include <math.h>
@@ -66,11 +67,12 @@ static status reserve_slots(solid *s, int32_t slots, report *r) {
     s->grid = memory_allocate_array(fresh, node_bytes);
     s->slot_results = memory_allocate_array(fresh, sizeof *s->slot_results);
     s->slot_touched = memory_allocate_array(fresh, sizeof *s->slot_touched);
+    s->slot_damaged = memory_allocate_array(fresh, sizeof *s->slot_damaged);
     if (s->explicit_on) s->damage_grid = memory_allocate_array(fresh, damage_bytes);
     bool flip = s->definition.transfer == TRANSFER_FLIP;
     if (flip) s->old_grid = memory_allocate_array(fresh, node_bytes);
     s->slot_capacity = capacity;
-    if (!s->slot_coordinate || !s->grid || !s->slot_results || !s->slot_touched || (s->explicit_on && !s->damage_grid) ||
+    if (!s->slot_coordinate || !s->grid || !s->slot_results || !s->slot_touched || !s->slot_damaged || (s->explicit_on && !s->damage_grid) ||
         (flip && !s->old_grid))
         return report_set(r, STATUS_SYSTEM, "out of memory for %d grid blocks", capacity);
     return STATUS_OK;
@@ -85,8 +87,9 @@ void grid_free(solid *s) {
     memory_free(s->old_grid, s->old_grid ? slots * BLOCK_NODES * NODE * sizeof(real) : 0);
     memory_free(s->slot_results, s->slot_results ? slots * sizeof *s->slot_results : 0);
     memory_free((void *)s->slot_touched, s->slot_touched ? slots * sizeof *s->slot_touched : 0);
+    memory_free(s->slot_damaged, s->slot_damaged ? slots * sizeof *s->slot_damaged : 0);
     memory_free(s->damage_grid, s->damage_grid ? slots * BLOCK_NODES * DAMAGE_NODE * sizeof(real) : 0);
-    s->slot_coordinate = NULL, s->grid = NULL, s->old_grid = NULL, s->slot_results = NULL, s->damage_grid = NULL, s->slot_touched = NULL;
+    s->slot_coordinate = NULL, s->grid = NULL, s->old_grid = NULL, s->slot_results = NULL, s->damage_grid = NULL, s->slot_touched = NULL, s->slot_damaged = NULL;
     s->slot_capacity = 0;
 }
 
@@ -140,10 +143,7 @@ static void update_slot(void *context, int64_t slot, int worker) {
     real *nodes = s->grid + slot * BLOCK_NODES * NODE;
     to_velocity(nodes);
     if (s->old_grid) to_velocity(s->old_grid + slot * BLOCK_NODES * NODE);
-    if (s->damage_grid) {
-        real *d = s->damage_grid + slot * BLOCK_NODES * DAMAGE_NODE, *weight = d + BLOCK_NODES;
-        for (int n = 0; n < BLOCK_NODES; n++) d[n] = weight[n] > 0 ? d[n] / weight[n] : 0;
-    }
+    if (s->damage_grid) damage_from_sums(s->damage_grid + slot * BLOCK_NODES * DAMAGE_NODE);
     grid_work w = {.state = s, .slot = (int32_t)slot, .nodes = nodes, .dt = u->dt, .result = &s->slot_results[slot]};
     if (s->constraint.on) memset(s->constraint.holds + slot * BLOCK_NODES, 0, BLOCK_NODES * sizeof(node_hold));
     for (int e = 0; e < s->effect_count; e++)

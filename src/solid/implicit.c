@@ -401,29 +401,29 @@ void implicit_load_window(const solid *s, const solid_block *b, real *window) {
     exchange_plane(s, b, window, SPREAD, false);
 }
 
-SIMD_INLINE void gather_spread(const tile_work *w, kernel_kind kind, const real *window) {
+SIMD_INLINE void gather_spread(const tile_work *w, kernel_kind kind, bool weighed, const real *window) {
     int nodes = kind == KERNEL_QUADRATIC ? 3 : 4;
-    diffusion_records(w->state, w->tile, w->scratch->records, kind);
+    if (!weighed) kernel_records(w->state, w->tile, w->scratch->records, kind);
     for (int p = 0; p < w->tile->count; p++) {
-        const real *r = w->scratch->records + p * RECORD, *first = window + (int)r[OF_NODE];
+        const real *r = w->scratch->records + p * RECORD, *first = window + (int)r[G2P_NODE];
         vec4 total = {0}, weight;
         for (int i = 0; i < nodes; i++) {
             vec4 sum = {0};
             for (int j = 0; j < nodes; j++) {
                 vec4 row;
                 vec4_load(&row, first + i * STRIDE_X + j * STRIDE_Y);
-                vec4_add_scaled(&sum, &row, r[OF_WY + j]);
+                vec4_add_scaled(&sum, &row, r[G2P_WY + j]);
             }
-            vec4_add_scaled(&total, &sum, r[OF_WX + i]);
+            vec4_add_scaled(&total, &sum, r[G2P_WX + i]);
         }
-        vec4_load(&weight, r + OF_WZ);
+        vec4_load(&weight, r + G2P_WZ);
         total *= weight;
         w->scratch->laplacian[p] = (total[0] + total[2]) + (total[1] + total[3]);
     }
     for (int p = w->tile->count; p < w->tile->pack_count * PACK; p++) w->scratch->laplacian[p] = 0;
 }
 
-void implicit_gather(const tile_work *w, const real *window) {
-    if (w->state->definition.laplacian == KERNEL_QUADRATIC) gather_spread(w, KERNEL_QUADRATIC, window);
-    else gather_spread(w, KERNEL_CUBIC, window);
+void implicit_gather(const tile_work *w, bool weighed, const real *window) {
+    if (w->state->definition.laplacian == KERNEL_QUADRATIC) gather_spread(w, KERNEL_QUADRATIC, weighed, window);
+    else gather_spread(w, KERNEL_CUBIC, weighed, window);
 }

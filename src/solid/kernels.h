@@ -45,6 +45,11 @@ SIMD_INLINE void kernel_weights(kernel_kind kernel, vec u, vec w[4]) {
     else cubic_weights(u, w);
 }
 
+SIMD_INLINE void kernel_curvatures(kernel_kind kernel, vec u, vec w[4]) {
+    if (kernel == KERNEL_QUADRATIC) quadratic_curvatures(w);
+    else cubic_curvatures(u, w);
+}
+
 /* The first node of each axis (in block coordinates) and the distances from it. */
 typedef struct kernel_place {
     vec3v base, u;
@@ -63,13 +68,26 @@ SIMD_INLINE vec window_index(vec3v base) {
 
 typedef enum row_exchange { ROW_ADD, ROW_LOAD, ROW_PREFETCH } row_exchange;
 
-/* `count` reals of a row: added to the grid, loaded from it, or their cache line called for. */
-SIMD_INLINE void exchange_reals(real *restrict window, real *restrict grid, int count, row_exchange what) {
-    if (what == ROW_PREFETCH) __builtin_prefetch(grid, 1);
-    else if (what == ROW_ADD)
-        for (int i = 0; i < count; i++) grid[i] += window[i];
-    else
-        for (int i = 0; i < count; i++) window[i] = grid[i];
+/* `count` reals of a row: added to the grid, loaded from it, or their cache line called for. Fours are loaded before they are stored: what is
+ * exchanged does not overlap, which the compiler cannot know. */
+SIMD_INLINE void exchange_reals(real *window, real *grid, int count, row_exchange what) {
+    if (what == ROW_PREFETCH) {
+        __builtin_prefetch(grid, 1);
+        return;
+    }
+    int fours = count / 4 * 4;
+    for (int i = 0; i < fours; i += 4) {
+        vec4 in_window, in_grid;
+        vec4_load(&in_window, window + i);
+        vec4_load(&in_grid, grid + i);
+        in_window += in_grid;
+        if (what == ROW_ADD) vec4_store(grid + i, &in_window);
+        else vec4_store(window + i, &in_grid);
+    }
+    for (int i = fours; i < count; i++) {
+        if (what == ROW_ADD) grid[i] += window[i];
+        else window[i] = grid[i];
+    }
 }
 
 /* Goes through a block's window row by row along z, each in the grid slots of three neighbours. Only −1 … 6 or −2 … 7 is touched: what
@@ -92,6 +110,13 @@ SIMD_INLINE void exchange_rows(const solid_block *b, real *window, real *grid, i
 SIMD_INLINE void exchange_window(const solid_block *b, real *window, real *grid, int reals, int slot_reals, bool wide, bool to_grid) {
     if (wide) exchange_rows(b, window, grid, reals, slot_reals, true, to_grid ? ROW_ADD : ROW_LOAD);
     else exchange_rows(b, window, grid, reals, slot_reals, false, to_grid ? ROW_ADD : ROW_LOAD);
+}
+
+/* A slot's Σ w d and Σ w, side by side, become its nodes' d in a row. */
+SIMD_INLINE void damage_from_sums(real *slot) {
+    real sums[BLOCK_NODES * DAMAGE_NODE];
+    memcpy(sums, slot, sizeof sums);
+    for (int n = 0; n < BLOCK_NODES; n++) slot[n] = sums[2 * n + 1] > 0 ? sums[2 * n] / sums[2 * n + 1] : 0;
 }
 
 /* Whether a pass with these kernels reaches −2 … 7 rather than −1 … 6. */

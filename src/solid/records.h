@@ -10,7 +10,7 @@
 /* Slots of a particle's record for scattering momentum and for gathering velocity. */
 enum {
     RECORD = 32,
-    P2G_BASE = 0, P2G_X = 4, P2G_Y = 8, P2G_Z = 12, P2G_WZ = 16, P2G_WX = 20, P2G_WY = 24, P2G_NODE = 28,
+    P2G_BASE = 0, P2G_X = 4, P2G_Y = 8, P2G_Z = 12, P2G_WZ = 16, P2G_WX = 20, P2G_WY = 24, P2G_NODE = 28, P2G_DAMAGE = 29 /* and 1 */,
     G2P_WX = 0, G2P_WY = 4, G2P_WZ = 8, G2P_OFFSET = 12, G2P_NODE = 15, G2P_OUT = 16,
 };
 
@@ -34,6 +34,21 @@ SIMD_INLINE void records_load(const real *records, int first, int slot, vec *col
 /* Writes lanes of `value` into column `slot` of the records of a part. */
 SIMD_INLINE void record_put(real *records, int first, int slot, vec value) {
     for (int lane = 0; lane < VEC_LANES; lane++) records[(first + lane) * RECORD + slot] = value[lane];
+}
+
+/* Weights and places of a tile's particles, as a gather wants them. */
+SIMD_INLINE void kernel_records(const solid *s, const solid_tile *tile, real *records, kernel_kind kernel) {
+    for (int k = 0; k < tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            kernel_place at = kernel_locate(kernel, vec3v_load(&s->fields[FIELD_POSITION], tile->first_pack + k, part));
+            vec columns[G2P_OUT];
+            kernel_weights(kernel, at.u.x, columns + G2P_WX);
+            kernel_weights(kernel, at.u.y, columns + G2P_WY);
+            kernel_weights(kernel, at.u.z, columns + G2P_WZ);
+            columns[G2P_OFFSET] = at.u.x, columns[G2P_OFFSET + 1] = at.u.y, columns[G2P_OFFSET + 2] = at.u.z;
+            columns[G2P_NODE] = window_index(at.base);
+            records_store(records, k * PACK + part * VEC_LANES, 0, columns, G2P_OUT);
+        }
 }
 
 /* Adds the contributions of particles that share a first node to the window: accumulated in registers, stored once. */

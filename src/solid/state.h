@@ -25,7 +25,7 @@ enum {
     BLOCK = 4,
     BLOCK_NODES = BLOCK * BLOCK * BLOCK,
     NODE = 4,            /* reals a node: momentum (velocity after the grid update) and mass */
-    DAMAGE_NODE = 2,     /* reals a node: Σ w d, Σ w; after the grid update their ratio in [0] */
+    DAMAGE_NODE = 2,     /* reals a node: Σ w d, Σ w; after the grid update a slot begins with their ratios */
     WINDOW_LOW = -2,     /* a window's first node, from the block's first node */
     WINDOW = 10,         /* nodes a side: reaches −2 … 7, enough for a cubic kernel centred by the quadratic's cells */
     WINDOW_NODES = WINDOW * WINDOW * WINDOW,
@@ -58,6 +58,7 @@ typedef struct solid_block {
     int32_t base_low[3], base_high[3]; /* first kernel nodes that a particle may have before the next sort */
     int32_t neighbour[NEIGHBOURS]; /* grid slots of the blocks around (x slowest); −1 where no kernel can reach */
     uint8_t turn[NEIGHBOURS];      /* how many blocks of lower colours touch that slot */
+    bool damaged;                  /* some particle of it was at the start of the step */
 } solid_block;
 
 /* What a tile's stages leave for the pass that follows them: all [TILE_PACKS][…][PACK]. */
@@ -186,6 +187,7 @@ struct solid {
     int32_t (*slot_coordinate)[3]; // [slot_capacity], in blocks, sorted
     real *grid;                    // [slot_capacity][BLOCK_NODES][NODE]
     real *old_grid;                // the same before forces, NULL unless the transfer is FLIP
+    bool *slot_damaged;            // [slot_capacity], where damaged particles reach: the damage channel works there alone
     real *damage_grid;             // [slot_capacity][BLOCK_NODES][DAMAGE_NODE], NULL unless some damage is explicit
 
     /* sorting: kept between sorts, grown when needed */
@@ -307,7 +309,7 @@ status implicit_reserve(solid *s, int32_t slots, report *r);
 void implicit_free(solid *s);
 status implicit_solve(solid *s, real dt, report *r);
 void implicit_load_window(const solid *s, const solid_block *b, real *window);
-void implicit_gather(const tile_work *w, const real *window);
+void implicit_gather(const tile_work *w, bool weighed, const real *window); /* weighed: records hold this kernel's weights already */
 /* A particle's own step from dⁿ: driven by H, with the diffusion of the nodes' solution and rate = η/Δt. */
 SIMD_INLINE vec implicit_damage(vec d, vec H, vec spread, vec rate) {
     vec solved = vec_fma(rate, d, H + spread) / (H + (rate + 1));

@@ -8,19 +8,21 @@
 #include <math.h>
 
 /* The kernels' first nodes as they are, and one cell of drift to either side: what a block promises until the next sort. */
-static void allow_drift(const solid *s, solid_block *b) {
-    const solid_field *position = &s->fields[FIELD_POSITION];
+static void allow_drift(void *context, int64_t block, int worker) {
+    (void)worker;
+    solid *s = context;
+    solid_block *b = &s->blocks[block];
     double shift = kernel_shift(s->definition.kernel);
     for (int c = 0; c < 3; c++) {
-        real least = 1000, most = -1000;
+        vec least = vec_all(1000), most = vec_all(-1000); /* padding repeats particles */
         for (int32_t t = b->first_tile; t < b->first_tile + b->tile_count; t++)
-            for (int32_t p = 0; p < s->tiles[t].count; p++) {
-                real x = field_at(position, s->tiles[t].first_pack + p / PACK, c, 0)[p % PACK];
-                least = x < least ? x : least;
-                most = x > most ? x : most;
-            }
-        b->base_low[c] = (int32_t)floor((double)least - shift) - 1;
-        b->base_high[c] = (int32_t)floor((double)most - shift) + 1;
+            for (int32_t k = 0; k < s->tiles[t].pack_count; k++)
+                for (int part = 0; part < PACK_PARTS; part++) {
+                    vec x = vec_load(field_at(&s->fields[FIELD_POSITION], s->tiles[t].first_pack + k, c, part));
+                    least = vec_min(x, least), most = vec_max(x, most);
+                }
+        b->base_low[c] = (int32_t)floor(-(double)vec_largest(-least) - shift) - 1;
+        b->base_high[c] = (int32_t)floor((double)vec_largest(most) - shift) + 1;
     }
 }
 
@@ -56,7 +58,7 @@ static uint64_t neighbour_key(const solid_block *b, const int32_t o[3]) {
 
 static status reserve_slots(solid *s, int32_t slots, report *r) {
     if (slots <= s->slot_capacity) return STATUS_OK;
-    int32_t capacity = slots + slots / 4 + 64;
+    int32_t capacity = slots + slots / 16 + 32;
     size_t fresh = (size_t)capacity;
     size_t node_bytes = BLOCK_NODES * NODE * sizeof(real), damage_bytes = BLOCK_NODES * DAMAGE_NODE * sizeof(real);
     grid_free(s);
@@ -93,20 +95,33 @@ void grid_free(solid *s) {
     s->slot_capacity = 0;
 }
 
-status grid_build(solid *s, report *r) {
-    status code = order_reserve_hash(s, 27 * (int64_t)s->block_count, r);
-    if (code != STATUS_OK) return code;
-    order_clear_hash(s);
-    for (int32_t b = 0; b < s->block_count; b++) {
-        int32_t low[3], high[3], o[3];
-        allow_drift(s, &s->blocks[b]);
-        reach(s, &s->blocks[b], low, high);
-        for (int n = 0; n < NEIGHBOURS; n++) {
-            neighbour_offset(n, o);
-            s->blocks[b].neighbour[n] = reaches(o, low, high) ? 0 : -1;
-            if (s->blocks[b].neighbour[n] == 0) (void)order_insert(s, neighbour_key(&s->blocks[b], o));
-        }
+/* Marks the neighbours that a block's kernels can reach, and notes their keys; false when the table is full. */
+static bool note_neighbours(solid *s, solid_block *b) {
+    int32_t low[3], high[3], o[3];
+    reach(s, b, low, high);
+    for (int n = 0; n < NEIGHBOURS; n++) {
+        neighbour_offset(n, o);
+        b->neighbour[n] = reaches(o, low, high) ? 0 : -1;
+        if (b->neighbour[n] == 0 && order_insert(s, neighbour_key(b, o)) < 0) return false;
     }
+    return true;
+}
+
+static status note_slots(solid *s, report *r) {
+    for (int64_t room = 4 * (int64_t)s->block_count;; room *= 2) {
+        status code = order_reserve_hash(s, room, r);
+        if (code != STATUS_OK) return code;
+        order_clear_hash(s);
+        bool fits = true;
+        for (int32_t b = 0; b < s->block_count && fits; b++) fits = note_neighbours(s, &s->blocks[b]);
+        if (fits) return STATUS_OK;
+    }
+}
+
+status grid_build(solid *s, report *r) {
+    parallel_for(s->threads, s->block_count, 8, allow_drift, s);
+    status code = note_slots(s, r);
+    if (code != STATUS_OK) return code;
     if ((code = order_rank_all(s, &s->slot_count, r)) != STATUS_OK) return code;
     if ((code = reserve_slots(s, s->slot_count, r)) != STATUS_OK) return code;
     for (int32_t i = 0; i < s->slot_count; i++) block_coordinate(s->block_list[i], s->slot_coordinate[i]);

@@ -191,13 +191,18 @@ struct solid {
     real *damage_grid;             // [slot_capacity][BLOCK_NODES][DAMAGE_NODE], NULL unless some damage is explicit
 
     /* sorting: kept between sorts, grown when needed */
-    uint64_t *sort_keys, *sort_keys2; // [count]
+    uint16_t *sort_codes;             // [pack_capacity][PACK], neighbour, material and cell that a particle goes to
+    int32_t *sort_order;              // [pack_capacity][PACK], where from
+    int32_t (*sort_moves)[NEIGHBOURS]; // [sort_move_capacity], of old blocks: how many go to each neighbour, then where to
+    int32_t *sort_starts;             // [sort_start_capacity], of new blocks: their first particle
+    int32_t *sort_materials;          // [sort_material_capacity], of new blocks: the end of each material's particles
+    int32_t sort_move_capacity, sort_start_capacity, sort_material_capacity;
     uint64_t *block_keys;             // [hash capacity]
     int32_t *block_ranks;             // [hash capacity]
     int64_t hash_capacity, hash_used;
     uint64_t *block_list; // [block_list_capacity], sorted keys of the blocks in use
     int32_t block_list_capacity;
-    real *permute;                    // [count]
+    real *permute;                    // [pack_capacity][PACK], one component on its way
 
     solid_worker *workers; // [threads]
     tile_result *tile_results;   // [result_capacity]
@@ -285,6 +290,7 @@ static inline bool kernels_have_cubic(const solid *s) {
 /* particles.c */
 status particles_reserve(solid *s, int32_t packs, report *r);
 status particles_load(solid *s, report *r);
+size_t particles_bytes(const solid *s); /* of all arrays of packs, sorting's included */
 void particles_free(solid *s);
 int particles_read(const solid *s, const char *field, double *out);
 /* sort.c */

@@ -184,6 +184,59 @@ SIMD_INLINE void vec8_load(vec8 *to, const real *from) {
     memcpy(to, from, sizeof *to);
 }
 
+SIMD_INLINE void vec4_store(real *to, const vec4 *from) {
+    memcpy(to, from, sizeof *from);
+}
+
+SIMD_INLINE void vec8_store(real *to, const vec8 *from) {
+    memcpy(to, from, sizeof *from);
+}
+
+/* ababab… of a pair; aabbccdd of four. */
+SIMD_INLINE void vec8_pairs(vec8 *to, const real *pair) {
+#if SUNDER_SIMD > 0 && SUNDER_PRECISION == 32
+    *to = _mm256_castpd_ps(_mm256_broadcast_sd((const double *)(const void *)pair));
+#elif SUNDER_SIMD == 2
+    *to = _mm512_broadcast_f64x2(_mm_loadu_pd(pair));
+#else
+    for (int i = 0; i < 8; i++) (*to)[i] = pair[i % 2];
+#endif
+}
+
+SIMD_INLINE void vec8_doubled(vec8 *to, const real *four) {
+    vec4 v;
+    vec4_load(&v, four);
+    *to = __builtin_shufflevector(v, v, 0, 0, 1, 1, 2, 2, 3, 3);
+}
+
+/* sum += scale · a, fused where vec_fma is. */
+SIMD_INLINE void vec4_add_scaled(vec4 *sum, const vec4 *a, real scale) {
+#if SUNDER_SIMD > 0 && SUNDER_PRECISION == 32
+    *sum = _mm_fmadd_ps(*a, _mm_set1_ps(scale), *sum);
+#elif SUNDER_SIMD > 0
+    *sum = _mm256_fmadd_pd(*a, _mm256_set1_pd(scale), *sum);
+#else
+    *sum += *a * scale;
+#endif
+}
+
+SIMD_INLINE void vec8_add_scaled(vec8 *sum, const vec8 *a, real scale) {
+#if SUNDER_SIMD > 0 && SUNDER_PRECISION == 32
+    *sum = _mm256_fmadd_ps(*a, _mm256_set1_ps(scale), *sum);
+#elif SUNDER_SIMD == 2
+    *sum = _mm512_fmadd_pd(*a, _mm512_set1_pd(scale), *sum);
+#else
+    *sum += *a * scale;
+#endif
+}
+
+/* out[0 … 2] = the sums (0 + 2) + (1 + 3) of the lanes of three. */
+SIMD_INLINE void vec4_sums(const vec4 *a, const vec4 *b, const vec4 *c, vec4 *out) {
+    vec4 ab = __builtin_shufflevector(*a, *b, 0, 4, 1, 5) + __builtin_shufflevector(*a, *b, 2, 6, 3, 7);
+    vec4 cc = __builtin_shufflevector(*c, *c, 0, 4, 1, 5) + __builtin_shufflevector(*c, *c, 2, 6, 3, 7);
+    *out = __builtin_shufflevector(ab, cc, 0, 1, 4, 5) + __builtin_shufflevector(ab, cc, 2, 3, 6, 7);
+}
+
 /* ---- rows: four nodes of four reals, for the transfers ----------------------------------------------------------- */
 
 enum { ROW = 16, ROW_PARTS = ROW / VEC_LANES };
@@ -205,6 +258,11 @@ SIMD_INLINE void row_store(real *to, node_row r) {
 SIMD_INLINE node_row row_fma(node_row a, node_row b, node_row c) {
     for (int i = 0; i < ROW_PARTS; i++) c.part[i] = vec_fma(a.part[i], b.part[i], c.part[i]);
     return c;
+}
+
+SIMD_INLINE node_row row_multiply(node_row a, node_row b) {
+    for (int i = 0; i < ROW_PARTS; i++) a.part[i] = a.part[i] * b.part[i];
+    return a;
 }
 
 SIMD_INLINE node_row row_scale_add(node_row a, real s, node_row c) {
@@ -261,27 +319,38 @@ SIMD_INLINE node_row row_spread(const real *four) {
     return r;
 }
 
-/* Adds the four groups of four, in the order (0 + 1) + (2 + 3). */
-SIMD_INLINE void row_fold(node_row r, real *four) {
+/* Adds the four groups of four of each of four rows, in the order (0 + 1) + (2 + 3): sixteen sums. */
+SIMD_INLINE void row_fold(const node_row rows[4], real *sums) {
 #if SUNDER_SIMD == 2 && SUNDER_PRECISION == 32
-    __m256 half01 = _mm512_castps512_ps256(r.part[0]), half23 = _mm512_extractf32x8_ps(r.part[0], 1);
-    __m128 sum01 = _mm_add_ps(_mm256_castps256_ps128(half01), _mm256_extractf128_ps(half01, 1));
-    __m128 sum23 = _mm_add_ps(_mm256_castps256_ps128(half23), _mm256_extractf128_ps(half23, 1));
-    _mm_storeu_ps(four, _mm_add_ps(sum01, sum23));
+#define FOLD(a, b) _mm512_add_ps(_mm512_shuffle_f32x4(a, b, 0x88), _mm512_shuffle_f32x4(a, b, 0xdd))
+    __m512 first = FOLD(rows[0].part[0], rows[1].part[0]), second = FOLD(rows[2].part[0], rows[3].part[0]);
+    _mm512_storeu_ps(sums, FOLD(first, second));
+#undef FOLD
 #elif SUNDER_SIMD == 2
-    __m256d sum01 = _mm256_add_pd(_mm512_castpd512_pd256(r.part[0]), _mm512_extractf64x4_pd(r.part[0], 1));
-    __m256d sum23 = _mm256_add_pd(_mm512_castpd512_pd256(r.part[1]), _mm512_extractf64x4_pd(r.part[1], 1));
-    _mm256_storeu_pd(four, _mm256_add_pd(sum01, sum23));
+    for (int i = 0; i < 4; i++) {
+        __m512d low = rows[i].part[0], high = rows[i].part[1];
+        __m256d sum01 = _mm256_add_pd(_mm512_castpd512_pd256(low), _mm512_extractf64x4_pd(low, 1));
+        __m256d sum23 = _mm256_add_pd(_mm512_castpd512_pd256(high), _mm512_extractf64x4_pd(high, 1));
+        _mm256_storeu_pd(sums + 4 * i, _mm256_add_pd(sum01, sum23));
+    }
 #elif SUNDER_SIMD == 1 && SUNDER_PRECISION == 32
-    __m128 sum01 = _mm_add_ps(_mm256_castps256_ps128(r.part[0]), _mm256_extractf128_ps(r.part[0], 1));
-    __m128 sum23 = _mm_add_ps(_mm256_castps256_ps128(r.part[1]), _mm256_extractf128_ps(r.part[1], 1));
-    _mm_storeu_ps(four, _mm_add_ps(sum01, sum23));
+    for (int i = 0; i < 4; i++) {
+        __m256 low = rows[i].part[0], high = rows[i].part[1];
+        __m128 sum01 = _mm_add_ps(_mm256_castps256_ps128(low), _mm256_extractf128_ps(low, 1));
+        __m128 sum23 = _mm_add_ps(_mm256_castps256_ps128(high), _mm256_extractf128_ps(high, 1));
+        _mm_storeu_ps(sums + 4 * i, _mm_add_ps(sum01, sum23));
+    }
 #elif SUNDER_SIMD == 1
-    _mm256_storeu_pd(four, _mm256_add_pd(_mm256_add_pd(r.part[0], r.part[1]), _mm256_add_pd(r.part[2], r.part[3])));
+    for (int i = 0; i < 4; i++) {
+        const vec *part = rows[i].part;
+        _mm256_storeu_pd(sums + 4 * i, _mm256_add_pd(_mm256_add_pd(part[0], part[1]), _mm256_add_pd(part[2], part[3])));
+    }
 #else
-    real all[ROW];
-    row_store(all, r);
-    for (int c = 0; c < 4; c++) four[c] = (all[c] + all[4 + c]) + (all[8 + c] + all[12 + c]);
+    for (int i = 0; i < 4; i++) {
+        real all[ROW];
+        row_store(all, rows[i]);
+        for (int c = 0; c < 4; c++) sums[4 * i + c] = (all[c] + all[4 + c]) + (all[8 + c] + all[12 + c]);
+    }
 #endif
 }
 

@@ -34,6 +34,11 @@ static void relax(void) {
 #endif
 }
 
+void thread_relax(int spins) {
+    if (spins < SPINS) relax();
+    else sched_yield();
+}
+
 static void take_chunks(int worker) {
     for (;;) {
         int64_t first = atomic_fetch_add(&next_item, current.grain);
@@ -119,10 +124,7 @@ void parallel_for(int threads, int64_t count, int64_t grain, void (*body)(void *
     announce();
     take_chunks(0);
     atomic_store(&open_for_work, 0);
-    for (int spins = 0; atomic_load(&inside) > 0; spins++) {
-        if (spins < SPINS) relax();
-        else sched_yield();
-    }
+    for (int spins = 0; atomic_load(&inside) > 0; spins++) thread_relax(spins);
     pthread_mutex_unlock(&owner);
 }
 

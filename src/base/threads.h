@@ -10,6 +10,9 @@
 void parallel_for(int threads, int64_t count, int64_t grain, void (*body)(void *context, int64_t i, int worker),
                   void *context);
 
+/* Passes the time of the `spins`th look at what another thread will have done soon; after many looks the processor is lent to others. */
+void thread_relax(int spins);
+
 /* Processors that this process may run on. */
 int processor_count(void);
 

@@ -87,6 +87,7 @@ void solid_constants_refresh(solid *s) {
                 effects[e]->stages->constants(material->effects, &s->definition, material->protects, s->constants[m][e]);
             if (effects[e]->stages->declare) effects[e]->stages->declare(s, m, material->effects);
         }
+        s->explicit_on |= s->material_damaged[m] && !s->material_implicit[m];
     }
 }
 
@@ -129,12 +130,8 @@ static solid *create(const solid_definition *definition, report *r) {
     plan_fields(s);
     solid_constants_refresh(s);
     s->workers = memory_allocate_array((size_t)s->threads, sizeof *s->workers);
-    s->sort_keys = memory_allocate_array((size_t)s->count, sizeof *s->sort_keys);
-    s->sort_keys2 = memory_allocate_array((size_t)s->count, sizeof *s->sort_keys2);
-    s->permute = memory_allocate_array((size_t)s->count, sizeof *s->permute);
     status code = STATUS_OK;
-    if (!s->workers || !s->sort_keys || !s->sort_keys2 || !s->permute)
-        code = report_set(r, STATUS_SYSTEM, "out of memory for %lld particles", (long long)s->count);
+    if (!s->workers) code = report_set(r, STATUS_SYSTEM, "out of memory for %d threads", s->threads);
     if (code == STATUS_OK) code = prepare(s, r);
     if (code != STATUS_OK) {
         if (!s->workers) s->threads = 0;
@@ -275,15 +272,14 @@ static int components(const solid *s, const char *field) {
 }
 
 static double bytes_per_particle(const solid *s) {
-    double bytes = (double)s->pack_capacity * PACK * sizeof *s->id;
-    for (int i = 0; i < s->field_count; i++) bytes += (double)s->pack_capacity * s->fields[i].components * PACK * sizeof(real);
-    double sort_bytes = (double)s->count * (2 * sizeof *s->sort_keys + sizeof *s->permute);
-    double node_reals = NODE + (s->damage_grid ? DAMAGE_NODE : 0) + (s->old_grid ? NODE : 0) + (s->implicit_grid ? 9 : 0);
+    double bytes = (double)particles_bytes(s);
+    double node_reals = NODE + (s->damage_grid ? DAMAGE_NODE : 0) + (s->old_grid ? NODE : 0) + (s->implicit_grid ? IMPLICIT_PLANES : 0);
     double grid_bytes = (double)s->slot_capacity * BLOCK_NODES * node_reals * sizeof(real);
     grid_bytes += constraint_bytes(s);
     double tables = (double)s->tile_capacity * (sizeof *s->tiles + sizeof *s->tile_results) +
-                    (double)s->block_capacity * sizeof *s->blocks + (double)s->hash_capacity * 12;
-    return (bytes + sort_bytes + grid_bytes + tables) / (double)s->count;
+                    (double)s->block_capacity * sizeof *s->blocks + (double)s->hash_capacity * 12 +
+                    (double)s->sort_move_capacity * sizeof *s->sort_moves;
+    return (bytes + grid_bytes + tables) / (double)s->count;
 }
 
 static void phases(const solid *s, double seconds[SOLID_PHASES]) {

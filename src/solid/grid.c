@@ -2,39 +2,37 @@
 #include "base/memory.h"
 #include "base/threads.h"
 #include "solid/inextensible.h"
+#include "solid/kernels.h"
 #include "solid/order.h"
 
 #include <math.h>
 
 /* The kernels' first nodes as they are, and one cell of drift to either side: what a block promises until the next sort. */
-static void allow_drift(const solid *s, solid_block *b) {
-    const solid_field *position = &s->fields[FIELD_POSITION];
+static void allow_drift(void *context, int64_t block, int worker) {
+    (void)worker;
+    solid *s = context;
+    solid_block *b = &s->blocks[block];
     double shift = kernel_shift(s->definition.kernel);
     for (int c = 0; c < 3; c++) {
-        real least = 1000, most = -1000;
+        vec least = vec_all(1000), most = vec_all(-1000); /* padding repeats particles */
         for (int32_t t = b->first_tile; t < b->first_tile + b->tile_count; t++)
-            for (int32_t p = 0; p < s->tiles[t].count; p++) {
-                real x = field_at(position, s->tiles[t].first_pack + p / PACK, c, 0)[p % PACK];
-                least = x < least ? x : least;
-                most = x > most ? x : most;
-            }
-        b->base_low[c] = (int32_t)floor((double)least - shift) - 1;
-        b->base_high[c] = (int32_t)floor((double)most - shift) + 1;
+            for (int32_t k = 0; k < s->tiles[t].pack_count; k++)
+                for (int part = 0; part < PACK_PARTS; part++) {
+                    vec x = vec_load(field_at(&s->fields[FIELD_POSITION], s->tiles[t].first_pack + k, c, part));
+                    least = vec_min(x, least), most = vec_max(x, most);
+                }
+        b->base_low[c] = (int32_t)floor(-(double)vec_largest(-least) - shift) - 1;
+        b->base_high[c] = (int32_t)floor((double)vec_largest(most) - shift) + 1;
     }
-}
-
-/* Whether some kernel of this state is four nodes wide. */
-static bool has_cubic(const solid *s) {
-    return s->definition.kernel == KERNEL_CUBIC || (s->transfers_damage && s->definition.laplacian == KERNEL_CUBIC);
 }
 
 /* First and last node that a block's kernels can touch. A cubic Laplacian beside a quadratic momentum kernel starts up to one node
  * earlier. */
 static void reach(const solid *s, const solid_block *b, int32_t low[3], int32_t high[3]) {
-    bool mixed = s->definition.kernel == KERNEL_QUADRATIC && has_cubic(s);
+    bool mixed = s->definition.kernel == KERNEL_QUADRATIC && kernels_have_cubic(s);
     for (int c = 0; c < 3; c++) {
         low[c] = b->base_low[c] - (mixed ? 1 : 0);
-        high[c] = b->base_high[c] + (has_cubic(s) ? 3 : 2);
+        high[c] = b->base_high[c] + (kernels_have_cubic(s) ? 3 : 2);
     }
 }
 
@@ -60,7 +58,7 @@ static uint64_t neighbour_key(const solid_block *b, const int32_t o[3]) {
 
 static status reserve_slots(solid *s, int32_t slots, report *r) {
     if (slots <= s->slot_capacity) return STATUS_OK;
-    int32_t capacity = slots + slots / 4 + 64;
+    int32_t capacity = slots + slots / 16 + 32;
     size_t fresh = (size_t)capacity;
     size_t node_bytes = BLOCK_NODES * NODE * sizeof(real), damage_bytes = BLOCK_NODES * DAMAGE_NODE * sizeof(real);
     grid_free(s);
@@ -70,11 +68,13 @@ static status reserve_slots(solid *s, int32_t slots, report *r) {
     s->slot_coordinate = memory_allocate_array(fresh, sizeof *s->slot_coordinate);
     s->grid = memory_allocate_array(fresh, node_bytes);
     s->slot_results = memory_allocate_array(fresh, sizeof *s->slot_results);
-    if (s->transfers_damage) s->damage_grid = memory_allocate_array(fresh, damage_bytes);
+    s->slot_touched = memory_allocate_array(fresh, sizeof *s->slot_touched);
+    s->slot_damaged = memory_allocate_array(fresh, sizeof *s->slot_damaged);
+    if (s->explicit_on) s->damage_grid = memory_allocate_array(fresh, damage_bytes);
     bool flip = s->definition.transfer == TRANSFER_FLIP;
     if (flip) s->old_grid = memory_allocate_array(fresh, node_bytes);
     s->slot_capacity = capacity;
-    if (!s->slot_coordinate || !s->grid || !s->slot_results || (s->transfers_damage && !s->damage_grid) ||
+    if (!s->slot_coordinate || !s->grid || !s->slot_results || !s->slot_touched || !s->slot_damaged || (s->explicit_on && !s->damage_grid) ||
         (flip && !s->old_grid))
         return report_set(r, STATUS_SYSTEM, "out of memory for %d grid blocks", capacity);
     return STATUS_OK;
@@ -88,46 +88,40 @@ void grid_free(solid *s) {
     memory_free(s->grid, s->grid ? slots * BLOCK_NODES * NODE * sizeof(real) : 0);
     memory_free(s->old_grid, s->old_grid ? slots * BLOCK_NODES * NODE * sizeof(real) : 0);
     memory_free(s->slot_results, s->slot_results ? slots * sizeof *s->slot_results : 0);
+    memory_free((void *)s->slot_touched, s->slot_touched ? slots * sizeof *s->slot_touched : 0);
+    memory_free(s->slot_damaged, s->slot_damaged ? slots * sizeof *s->slot_damaged : 0);
     memory_free(s->damage_grid, s->damage_grid ? slots * BLOCK_NODES * DAMAGE_NODE * sizeof(real) : 0);
-    s->slot_coordinate = NULL, s->grid = NULL, s->old_grid = NULL, s->slot_results = NULL, s->damage_grid = NULL;
+    s->slot_coordinate = NULL, s->grid = NULL, s->old_grid = NULL, s->slot_results = NULL, s->damage_grid = NULL, s->slot_touched = NULL, s->slot_damaged = NULL;
     s->slot_capacity = 0;
 }
 
-/* Blocks of one colour never write to the same node: 8 colours, period two blocks, when kernels stay within −1 … 6 of their
- * block; 27 when they reach −2 … 7. */
-static void colour_blocks(solid *s) {
-    int period = has_cubic(s) ? 3 : 2, count = period * period * period;
-    int32_t fill[28] = {0};
-    s->colour_count = count;
-    memset(s->colour_start, 0, sizeof s->colour_start);
-    for (int pass = 0; pass < 2; pass++) {
-        for (int32_t b = 0; b < s->block_count; b++) {
-            const int32_t *c = s->blocks[b].coordinate;
-            int colour = 0;
-            for (int axis = 0; axis < 3; axis++) colour = colour * period + ((c[axis] % period) + period) % period;
-            if (pass == 0) s->colour_start[colour + 1]++;
-            else s->colour_blocks[fill[colour]++] = b;
-        }
-        if (pass == 1) break;
-        for (int i = 0; i < count; i++) s->colour_start[i + 1] += s->colour_start[i];
-        memcpy(fill, s->colour_start, sizeof fill);
+/* Marks the neighbours that a block's kernels can reach, and notes their keys; false when the table is full. */
+static bool note_neighbours(solid *s, solid_block *b) {
+    int32_t low[3], high[3], o[3];
+    reach(s, b, low, high);
+    for (int n = 0; n < NEIGHBOURS; n++) {
+        neighbour_offset(n, o);
+        b->neighbour[n] = reaches(o, low, high) ? 0 : -1;
+        if (b->neighbour[n] == 0 && order_insert(s, neighbour_key(b, o)) < 0) return false;
+    }
+    return true;
+}
+
+static status note_slots(solid *s, report *r) {
+    for (int64_t room = 4 * (int64_t)s->block_count;; room *= 2) {
+        status code = order_reserve_hash(s, room, r);
+        if (code != STATUS_OK) return code;
+        order_clear_hash(s);
+        bool fits = true;
+        for (int32_t b = 0; b < s->block_count && fits; b++) fits = note_neighbours(s, &s->blocks[b]);
+        if (fits) return STATUS_OK;
     }
 }
 
 status grid_build(solid *s, report *r) {
-    status code = order_reserve_hash(s, 27 * (int64_t)s->block_count, r);
+    parallel_for(s->threads, s->block_count, 8, allow_drift, s);
+    status code = note_slots(s, r);
     if (code != STATUS_OK) return code;
-    order_clear_hash(s);
-    for (int32_t b = 0; b < s->block_count; b++) {
-        int32_t low[3], high[3], o[3];
-        allow_drift(s, &s->blocks[b]);
-        reach(s, &s->blocks[b], low, high);
-        for (int n = 0; n < NEIGHBOURS; n++) {
-            neighbour_offset(n, o);
-            s->blocks[b].neighbour[n] = reaches(o, low, high) ? 0 : -1;
-            if (s->blocks[b].neighbour[n] == 0) (void)order_insert(s, neighbour_key(&s->blocks[b], o));
-        }
-    }
     if ((code = order_rank_all(s, &s->slot_count, r)) != STATUS_OK) return code;
     if ((code = reserve_slots(s, s->slot_count, r)) != STATUS_OK) return code;
     for (int32_t i = 0; i < s->slot_count; i++) block_coordinate(s->block_list[i], s->slot_coordinate[i]);
@@ -137,7 +131,7 @@ status grid_build(solid *s, report *r) {
             neighbour_offset(n, o);
             if (s->blocks[b].neighbour[n] == 0) s->blocks[b].neighbour[n] = order_rank(s, neighbour_key(&s->blocks[b], o));
         }
-    colour_blocks(s);
+    colours_assign(s);
     s->constraint.mapped = false;
     return STATUS_OK;
 }
@@ -164,10 +158,7 @@ static void update_slot(void *context, int64_t slot, int worker) {
     real *nodes = s->grid + slot * BLOCK_NODES * NODE;
     to_velocity(nodes);
     if (s->old_grid) to_velocity(s->old_grid + slot * BLOCK_NODES * NODE);
-    if (s->transfers_damage) {
-        real *d = s->damage_grid + slot * BLOCK_NODES * DAMAGE_NODE, *weight = d + BLOCK_NODES;
-        for (int n = 0; n < BLOCK_NODES; n++) d[n] = weight[n] > 0 ? d[n] / weight[n] : 0;
-    }
+    if (s->damage_grid) damage_from_sums(s->damage_grid + slot * BLOCK_NODES * DAMAGE_NODE);
     grid_work w = {.state = s, .slot = (int32_t)slot, .nodes = nodes, .dt = u->dt, .result = &s->slot_results[slot]};
     if (s->constraint.on) memset(s->constraint.holds + slot * BLOCK_NODES, 0, BLOCK_NODES * sizeof(node_hold));
     for (int e = 0; e < s->effect_count; e++)

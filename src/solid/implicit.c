@@ -14,13 +14,13 @@
  * wide, ended at d = 1 instead of 0.95, half as wide again, at any Δt. */
 #include "base/memory.h"
 #include "base/threads.h"
-#include "solid/kernels.h"
+#include "solid/records.h"
 
 #include <math.h>
 
-/* Planes of nodes, [slot][PLANES][BLOCK_NODES]. The first four are scattered together: DIAGONAL starts as V R, SOURCE as V m,
- * PRECONDITIONER as B's diagonal. */
-enum { DIAGONAL, SOURCE, PRECONDITIONER, VOLUME, SPREAD, SOLUTION, RESIDUAL_VECTOR, SEARCH, IMAGE, PLANES, SCATTERED = IMPLICIT_WINDOWS };
+/* Planes of nodes, [slot][PLANES][BLOCK_NODES]. The first four begin as one array of nodes, [BLOCK_NODES][NODE], in which particles' sums are made:
+ * V R, V m, V l0², V. IMAGE is B × SEARCH, SPREAD what it adds up to: B × the solution, which is all that particles need. */
+enum { DIAGONAL, SOURCE, PRECONDITIONER, VOLUME, SPREAD, RESIDUAL_VECTOR, SEARCH, IMAGE, PLANES = IMPLICIT_PLANES };
 
 enum { ITERATION_LIMIT = 1000 };
 
@@ -51,199 +51,226 @@ static real *plane(const solid *s, int64_t slot, int which) {
 
 typedef struct pass_context {
     solid *state;
-    const int32_t *blocks;
     real dt;
 } pass_context;
-
-/* One particle's kernel: weights and distances of the nodes along each axis, and where they begin in the window. */
-typedef struct particle_kernel {
-    real w[3][4], x[3][4];
-    int node;
-} particle_kernel;
-
-/* Calls body(kernel, particle) for each particle of a tile; kernels are made a vector at a time. */
-#define FOR_EACH_KERNEL(s, tile, kernel_of, k_, body)                                                                  \
-    for (int k_ = 0; k_ < (tile)->pack_count; k_++)                                                                    \
-        for (int part = 0; part < PACK_PARTS; part++) {                                                                \
-            kernel_place at = kernel_locate(kernel_of, vec3v_load(&(s)->fields[FIELD_POSITION], (tile)->first_pack + k_, part)); \
-            vec u[3] = {at.u.x, at.u.y, at.u.z}, weight[3][4], first_node = window_index(at.base);                     \
-            for (int axis = 0; axis < 3; axis++) kernel_weights(kernel_of, u[axis], weight[axis]);                     \
-            for (int lane = 0; lane < VEC_LANES; lane++) {                                                             \
-                if (k_ * PACK + part * VEC_LANES + lane >= (tile)->count) break;                                       \
-                particle_kernel kernel = {.node = (int)first_node[lane]};                                              \
-                for (int axis = 0; axis < 3; axis++)                                                                   \
-                    for (int n = 0; n < 4; n++) {                                                                      \
-                        kernel.w[axis][n] = weight[axis][n][lane];                                                     \
-                        kernel.x[axis][n] = (real)n - u[axis][lane];                                                   \
-                    }                                                                                                  \
-                int32_t pack = (tile)->first_pack + k_;                                                                \
-                int within = part * VEC_LANES + lane;                                                                  \
-                body;                                                                                                  \
-            }                                                                                                          \
-        }
 
 static bool tile_is_implicit(const solid *s, const solid_tile *tile) {
     return s->material_implicit[tile->material];
 }
 
-/* D⁻¹ in dx: ∇Θ = this × w × (distance in dx). */
-SIMD_INLINE real gradient_scale(const solid *s) {
-    return (real)((s->definition.laplacian == KERNEL_QUADRATIC ? 4.0 : 3.0) / s->definition.dx);
+/* What a particle adds to its nodes: w (V/r, V b/r, V l0², V). In the slots of a momentum record. */
+SIMD_INLINE void system_records(const solid *s, const solid_tile *tile, real *records, kernel_kind kind, real dt) {
+    const implicit_material *m = &s->implicit_materials[tile->material];
+    for (int k = 0; k < tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            int32_t pack = tile->first_pack + k;
+            vec volume = vec_load(field_at(&s->fields[FIELD_VOLUME], pack, 0, part)), H = vec_load(field_at(&s->fields[s->history_field], pack, 0, part));
+            vec rate = scaled(s, s->viscosity_scale, pack, part, vec_all(m->eta / dt)), mobile = volume / (rate + 1 + H);
+            kernel_place at = kernel_locate(kind, vec3v_load(&s->fields[FIELD_POSITION], pack, part));
+            vec columns[RECORD] = {mobile, mobile * vec_fma(rate, vec_load(field_at(&s->fields[s->damage_field], pack, 0, part)), H),
+                                   volume * m->length2, volume};
+            kernel_weights(kind, at.u.x, columns + P2G_WX);
+            kernel_weights(kind, at.u.y, columns + P2G_WY);
+            kernel_weights(kind, at.u.z, columns + P2G_WZ);
+            columns[P2G_NODE] = window_index(at.base);
+            records_store(records, k * PACK + part * VEC_LANES, 0, columns, RECORD);
+        }
 }
 
-SIMD_INLINE void scatter_system(const particle_kernel *k, int nodes, real volume, real mobility, real own, real spread, real *window) {
+/* Adds what particles that share a first node give. */
+SIMD_INLINE int system_run(const real *records, int p, int count, int nodes, real *window) {
+    real node = records[p * RECORD + P2G_NODE], *first = window + (int)node * NODE;
+    node_row sum[16] = {{{{0}}}};
+    for (; p < count && records[p * RECORD + P2G_NODE] == node; p++) {
+        const real *r = records + p * RECORD;
+        node_row value = row_multiply(row_spread(r + P2G_WZ), row_repeat(r + P2G_BASE));
+        for (int i = 0; i < nodes; i++) {
+            node_row here = row_scale(value, r[P2G_WX + i]);
+            for (int j = 0; j < nodes; j++) sum[i * nodes + j] = row_scale_add(here, r[P2G_WY + j], sum[i * nodes + j]);
+        }
+    }
     for (int i = 0; i < nodes; i++)
         for (int j = 0; j < nodes; j++) {
-            real wij = k->w[0][i] * k->w[1][j], reach = k->x[0][i] * k->x[0][i] + k->x[1][j] * k->x[1][j];
-            real *to = window + k->node + (i * WINDOW + j) * WINDOW;
-            for (int n = 0; n < nodes; n++) {
-                real w = wij * k->w[2][n], distance2 = reach + k->x[2][n] * k->x[2][n];
-                to[DIAGONAL * WINDOW_NODES + n] += volume * mobility * w;
-                to[SOURCE * WINDOW_NODES + n] += volume * own * w;
-                to[PRECONDITIONER * WINDOW_NODES + n] += volume * spread * w * w * distance2;
-                to[VOLUME * WINDOW_NODES + n] += volume * w;
+            real *to = first + (i * STRIDE_X + j * STRIDE_Y) * NODE;
+            row_store(to, row_add(row_load(to), sum[i * nodes + j]));
+        }
+    return p;
+}
+
+/* A particle's record for B: weights, weights × distances in dx, V l0² D⁻². */
+enum { OF_WX = 0, OF_WY = 4, OF_WZ = 8, OF_MX = 12, OF_MY = 16, OF_MZ = 20, OF_FACTOR = 24, OF_NODE = 25 };
+
+SIMD_INLINE void moments(vec u, const vec w[4], vec m[4]) {
+    for (int n = 0; n < 4; n++) m[n] = w[n] * ((real)n - u);
+}
+
+SIMD_INLINE void diffusion_records(const solid *s, const solid_tile *tile, real *records, kernel_kind kind) {
+    real gradient = (real)((kind == KERNEL_QUADRATIC ? 4.0 : 3.0) / s->definition.dx); /* D⁻¹ in dx: ∇Θ = this × w × (distance in dx) */
+    real factor = s->implicit_materials[tile->material].length2 * gradient * gradient;
+    for (int k = 0; k < tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            int32_t pack = tile->first_pack + k;
+            kernel_place at = kernel_locate(kind, vec3v_load(&s->fields[FIELD_POSITION], pack, part));
+            vec columns[RECORD] = {vec_all(0)};
+            kernel_weights(kind, at.u.x, columns + OF_WX);
+            kernel_weights(kind, at.u.y, columns + OF_WY);
+            kernel_weights(kind, at.u.z, columns + OF_WZ);
+            moments(at.u.x, columns + OF_WX, columns + OF_MX);
+            moments(at.u.y, columns + OF_WY, columns + OF_MY);
+            moments(at.u.z, columns + OF_WZ, columns + OF_MZ);
+            columns[OF_FACTOR] = factor * vec_load(field_at(&s->fields[FIELD_VOLUME], pack, 0, part));
+            columns[OF_NODE] = window_index(at.base);
+            records_store(records, k * PACK + part * VEC_LANES, 0, columns, RECORD);
+        }
+}
+
+/* V l0² Σ ∇Θ_j x_j of one particle, by separable sums as in gather_particle. */
+SIMD_INLINE void gradient(const real *r, int nodes, const real *x, vec4 *out) {
+    vec4 plain = {0}, along_x = {0}, along_y = {0}, weight, moment;
+    for (int i = 0; i < nodes; i++) {
+        vec4 sum = {0}, leaning = {0};
+        for (int j = 0; j < nodes; j++) {
+            vec4 row;
+            vec4_load(&row, x + i * STRIDE_X + j * STRIDE_Y);
+            vec4_add_scaled(&sum, &row, r[OF_WY + j]);
+            vec4_add_scaled(&leaning, &row, r[OF_MY + j]);
+        }
+        vec4_add_scaled(&plain, &sum, r[OF_WX + i]);
+        vec4_add_scaled(&along_x, &sum, r[OF_MX + i]);
+        vec4_add_scaled(&along_y, &leaning, r[OF_WX + i]);
+    }
+    vec4_load(&weight, r + OF_WZ);
+    vec4_load(&moment, r + OF_MZ);
+    along_x *= weight, along_y *= weight, plain *= moment;
+    vec4_sums(&along_x, &along_y, &plain, out);
+    *out *= r[OF_FACTOR];
+}
+
+/* y += V l0² ∇Θ_i · Σ ∇Θ_j x_j over particles that share a first node. */
+SIMD_INLINE int diffusion_run(const real *records, int p, int count, int nodes, const real *x, real *y) {
+    real node = records[p * RECORD + OF_NODE];
+    vec4 sum[16] = {{0}};
+    for (; p < count && records[p * RECORD + OF_NODE] == node; p++) {
+        const real *r = records + p * RECORD;
+        vec4 g, weight, level, lean_x, lean_y;
+        gradient(r, nodes, x + (int)node, &g);
+        vec4_load(&weight, r + OF_WZ);
+        vec4_load(&level, r + OF_MZ);
+        lean_x = weight * g[0], lean_y = weight * g[1], level *= g[2];
+        for (int i = 0; i < nodes; i++) {
+            vec4 here = level * r[OF_WX + i], slope = lean_y * r[OF_WX + i];
+            vec4_add_scaled(&here, &lean_x, r[OF_MX + i]);
+            for (int j = 0; j < nodes; j++) {
+                vec4_add_scaled(&sum[i * nodes + j], &here, r[OF_WY + j]);
+                vec4_add_scaled(&sum[i * nodes + j], &slope, r[OF_MY + j]);
             }
         }
-}
-
-/* y += V l0² ∇Θ (Σ ∇Θ_j x_j): a gather, then a scatter, of one particle. */
-SIMD_INLINE void apply_particle(const particle_kernel *k, int nodes, real factor, const real *x, real *y) {
-    real g[3] = {0, 0, 0};
+    }
     for (int i = 0; i < nodes; i++)
         for (int j = 0; j < nodes; j++) {
-            const real *from = x + k->node + (i * WINDOW + j) * WINDOW;
-            real plain = 0, along = 0, wij = k->w[0][i] * k->w[1][j];
-            for (int n = 0; n < nodes; n++) {
-                real value = k->w[2][n] * from[n];
-                plain += value;
-                along += value * k->x[2][n];
-            }
-            g[0] += wij * k->x[0][i] * plain;
-            g[1] += wij * k->x[1][j] * plain;
-            g[2] += wij * along;
+            real *to = y + (int)node + i * STRIDE_X + j * STRIDE_Y;
+            for (int n = 0; n < 4; n++) to[n] += sum[i * nodes + j][n];
         }
-    for (int i = 0; i < nodes; i++)
-        for (int j = 0; j < nodes; j++) {
-            real *to = y + k->node + (i * WINDOW + j) * WINDOW;
-            real wij = factor * k->w[0][i] * k->w[1][j], flat = g[0] * k->x[0][i] + g[1] * k->x[1][j];
-            for (int n = 0; n < nodes; n++) to[n] += wij * k->w[2][n] * (flat + g[2] * k->x[2][n]);
-        }
+    return p;
 }
 
-/* Planes of one block's window to or from the grid. */
+/* One plane of a block's window to or from the grid. */
 SIMD_INLINE void exchange_plane(const solid *s, const solid_block *b, real *window, int which, bool to_grid) {
     bool wide = kernels_are_wide(s->definition.kernel, s->definition.laplacian, true);
     exchange_window(b, window, s->implicit_grid + which * BLOCK_NODES, 1, PLANES * BLOCK_NODES, wide, to_grid);
 }
 
-SIMD_INLINE void system_block(pass_context *c, int32_t index, int worker, kernel_kind kind) {
+SIMD_INLINE void system_block(const pass_context *c, int32_t index, int worker, kernel_kind kind) {
     solid *s = c->state;
     const solid_block *b = &s->blocks[index];
-    real *window = s->workers[worker].implicit_window;
-    int nodes = kind == KERNEL_QUADRATIC ? 3 : 4;
-    real scale = gradient_scale(s), gradient2 = scale * scale;
-    memset(window, 0, SCATTERED * WINDOW_NODES * sizeof *window);
+    real *window = s->workers[worker].implicit_window, *records = s->workers[worker].tile.records;
+    memset(window, 0, NODE * WINDOW_NODES * sizeof *window);
     for (int32_t t = b->first_tile; t < b->first_tile + b->tile_count; t++) {
         const solid_tile *tile = &s->tiles[t];
         if (!tile_is_implicit(s, tile)) continue;
-        const implicit_material *m = &s->implicit_materials[tile->material];
-        real rate = m->eta / c->dt, spread = m->length2 * gradient2;
-        FOR_EACH_KERNEL(s, tile, kind, k,
-                        real history = field_at(&s->fields[s->history_field], pack, 0, 0)[within];
-                        real here = rate * (real)scale_of(s, s->viscosity_scale, pack, within);
-                        real mobility = 1 / (here + 1 + history);
-                        real own = mobility * (here * field_at(&s->fields[s->damage_field], pack, 0, 0)[within] + history);
-                        scatter_system(&kernel, nodes, field_at(&s->fields[FIELD_VOLUME], pack, 0, 0)[within], mobility, own, spread, window))
+        system_records(s, tile, records, kind, c->dt);
+        for (int p = 0; p < tile->count;) p = system_run(records, p, tile->count, kind == KERNEL_QUADRATIC ? 3 : 4, window);
     }
-    for (int which = 0; which < SCATTERED; which++) exchange_plane(s, b, window + which * WINDOW_NODES, which, true);
+    bool wide = kernels_are_wide(s->definition.kernel, s->definition.laplacian, true);
+    exchange_window(b, window, s->implicit_grid, NODE, PLANES * BLOCK_NODES, wide, true);
 }
 
-SIMD_INLINE void apply_block(pass_context *c, int32_t index, int worker, kernel_kind kind) {
+SIMD_INLINE void diffusion_block(const pass_context *c, int32_t index, int worker, kernel_kind kind) {
     solid *s = c->state;
     const solid_block *b = &s->blocks[index];
-    real *x = s->workers[worker].implicit_window, *y = x + WINDOW_NODES;
-    int nodes = kind == KERNEL_QUADRATIC ? 3 : 4;
-    real scale = gradient_scale(s), gradient2 = scale * scale;
+    real *x = s->workers[worker].implicit_window, *y = x + WINDOW_NODES, *records = s->workers[worker].tile.records;
+    memset(x, 0, 2 * WINDOW_NODES * sizeof *x); /* rows are read four nodes long, and what no kernel reaches must be a number */
     exchange_plane(s, b, x, SEARCH, false);
-    memset(y, 0, WINDOW_NODES * sizeof *y);
     for (int32_t t = b->first_tile; t < b->first_tile + b->tile_count; t++) {
         const solid_tile *tile = &s->tiles[t];
         if (!tile_is_implicit(s, tile)) continue;
-        real spread = s->implicit_materials[tile->material].length2 * gradient2;
-        FOR_EACH_KERNEL(s, tile, kind, k,
-                        apply_particle(&kernel, nodes, spread * field_at(&s->fields[FIELD_VOLUME], pack, 0, 0)[within], x, y))
+        diffusion_records(s, tile, records, kind);
+        for (int p = 0; p < tile->count;) p = diffusion_run(records, p, tile->count, kind == KERNEL_QUADRATIC ? 3 : 4, x, y);
     }
     exchange_plane(s, b, y, IMAGE, true);
 }
 
 #define PASSES(name, kind)                                                                                             \
-    static void system_##name(void *context, int64_t i, int worker) {                                                  \
-        pass_context *c = context;                                                                                     \
-        system_block(c, c->blocks[i], worker, kind);                                                                   \
+    static void system_##name(void *context, int32_t block, int32_t next, int worker) {                                \
+        (void)next;                                                                                                    \
+        system_block(context, block, worker, kind);                                                                    \
     }                                                                                                                  \
-    static void apply_##name(void *context, int64_t i, int worker) {                                                   \
-        pass_context *c = context;                                                                                     \
-        apply_block(c, c->blocks[i], worker, kind);                                                                    \
+    static void diffusion_##name(void *context, int32_t block, int32_t next, int worker) {                             \
+        (void)next;                                                                                                    \
+        diffusion_block(context, block, worker, kind);                                                                 \
     }
 PASSES(quadratic, KERNEL_QUADRATIC)
 PASSES(cubic, KERNEL_CUBIC)
 
-static void by_colour(solid *s, real dt, void (*pass)(void *, int64_t, int)) {
-    pass_context c = {.state = s, .dt = dt};
-    for (int colour = 0; colour < s->colour_count; colour++) {
-        c.blocks = s->colour_blocks + s->colour_start[colour];
-        parallel_for(s->threads, s->colour_start[colour + 1] - s->colour_start[colour], 1, pass, &c);
-    }
-}
-
 /* ---- passes over nodes ------------------------------------------------------------------------------------------- */
 
-static void clear_planes(void *context, int64_t slot, int worker) {
+static void clear_sums(void *context, int64_t slot, int worker) {
     (void)worker;
-    memset(plane(context, slot, 0), 0, SCATTERED * BLOCK_NODES * sizeof(real));
+    memset(plane(context, slot, 0), 0, NODE * BLOCK_NODES * sizeof(real));
 }
 
-/* A, c, and the start: solution = search = m, for B x. */
+/* B's diagonal over Σ V l0² w/dx² where particles are even: D⁻² 3 ∫ w² x² (∫ w²)², distances in dx. A preconditioner asks for no more. */
+static real even_diagonal(const solid *s) {
+    return (real)((s->definition.laplacian == KERNEL_QUADRATIC ? 1.115 : 0.537) / (s->definition.dx * s->definition.dx));
+}
+
+/* The planes from the sums: A, c, M⁻¹, and search = m, for B m. */
 static void prepare_slot(void *context, int64_t slot, int worker) {
     (void)worker;
     solid *s = context;
+    real sums[BLOCK_NODES * NODE], even = even_diagonal(s);
     real *diagonal = plane(s, slot, DIAGONAL), *source = plane(s, slot, SOURCE), *precondition = plane(s, slot, PRECONDITIONER);
-    real *x = plane(s, slot, SOLUTION);
-    const real *volume = plane(s, slot, VOLUME);
+    real *volume = plane(s, slot, VOLUME), *search = plane(s, slot, SEARCH);
     double norm = 0;
+    memcpy(sums, diagonal, sizeof sums);
     for (int n = 0; n < BLOCK_NODES; n++) {
-        bool used = diagonal[n] > 0;
-        real inverse = used ? volume[n] / diagonal[n] : 0;
-        x[n] = used ? source[n] / volume[n] : 0;
-        diagonal[n] = volume[n] * inverse;
-        source[n] *= inverse;
-        precondition[n] = used ? 1 / (diagonal[n] + precondition[n]) : 0;
+        const real *sum = sums + NODE * n;
+        bool used = sum[0] > 0;
+        real inverse = used ? sum[3] / sum[0] : 0;
+        search[n] = used ? sum[1] / sum[3] : 0;
+        volume[n] = sum[3];
+        diagonal[n] = sum[3] * inverse;
+        source[n] = sum[1] * inverse;
+        precondition[n] = used ? 1 / (diagonal[n] + even * sum[2]) : 0;
         norm += (double)source[n] * (double)source[n];
     }
-    memcpy(plane(s, slot, SEARCH), x, BLOCK_NODES * sizeof *x);
+    memset(plane(s, slot, IMAGE), 0, BLOCK_NODES * sizeof(real));
     s->implicit_sums[2 * slot] = norm;
     s->implicit_sums[2 * slot + 1] = 0;
 }
 
-/* IMAGE ← A search; B's share is added by the pass over particles. */
-static void diagonal_slot(void *context, int64_t slot, int worker) {
-    (void)worker;
-    solid *s = context;
-    const real *diagonal = plane(s, slot, DIAGONAL), *p = plane(s, slot, SEARCH);
-    real *image = plane(s, slot, IMAGE);
-    for (int n = 0; n < BLOCK_NODES; n++) image[n] = diagonal[n] * p[n];
-}
-
-/* r ← c − (A + B) x, search ← M⁻¹ r; sums: r·M⁻¹r, r·r. */
+/* From m, of which A m = c: r = −B m. Search ← M⁻¹ r; sums: r·M⁻¹r, r·r. */
 static void residual_slot(void *context, int64_t slot, int worker) {
     (void)worker;
     solid *s = context;
-    const real *source = plane(s, slot, SOURCE), *image = plane(s, slot, IMAGE), *precondition = plane(s, slot, PRECONDITIONER);
-    real *r = plane(s, slot, RESIDUAL_VECTOR), *p = plane(s, slot, SEARCH);
+    const real *precondition = plane(s, slot, PRECONDITIONER);
+    real *r = plane(s, slot, RESIDUAL_VECTOR), *p = plane(s, slot, SEARCH), *spread = plane(s, slot, SPREAD), *image = plane(s, slot, IMAGE);
     double preconditioned = 0, square = 0;
     for (int n = 0; n < BLOCK_NODES; n++) {
-        r[n] = precondition[n] > 0 ? source[n] - image[n] : 0;
+        spread[n] = image[n];
+        r[n] = precondition[n] > 0 ? -image[n] : 0;
         p[n] = precondition[n] * r[n];
+        image[n] = 0;
         preconditioned += (double)r[n] * (double)p[n];
         square += (double)r[n] * (double)r[n];
     }
@@ -251,13 +278,13 @@ static void residual_slot(void *context, int64_t slot, int worker) {
     s->implicit_sums[2 * slot + 1] = square;
 }
 
-/* search · image */
+/* search · (A + B) search */
 static void curvature_slot(void *context, int64_t slot, int worker) {
     (void)worker;
     solid *s = context;
-    const real *p = plane(s, slot, SEARCH), *image = plane(s, slot, IMAGE);
+    const real *p = plane(s, slot, SEARCH), *image = plane(s, slot, IMAGE), *diagonal = plane(s, slot, DIAGONAL);
     double sum = 0;
-    for (int n = 0; n < BLOCK_NODES; n++) sum += (double)p[n] * (double)image[n];
+    for (int n = 0; n < BLOCK_NODES; n++) sum += (double)p[n] * (double)(image[n] + diagonal[n] * p[n]);
     s->implicit_sums[2 * slot] = sum;
     s->implicit_sums[2 * slot + 1] = 0;
 }
@@ -267,17 +294,18 @@ typedef struct vector_context {
     real factor;
 } vector_context;
 
-/* x += α p, r −= α q; sums: r·M⁻¹r, r·r. */
+/* r −= α (A + B) p, spread += α B p; sums: r·M⁻¹r, r·r. */
 static void advance_slot(void *context, int64_t slot, int worker) {
     (void)worker;
     vector_context *c = context;
     solid *s = c->state;
     const real *p = plane(s, slot, SEARCH), *image = plane(s, slot, IMAGE), *precondition = plane(s, slot, PRECONDITIONER);
-    real *x = plane(s, slot, SOLUTION), *r = plane(s, slot, RESIDUAL_VECTOR);
+    const real *diagonal = plane(s, slot, DIAGONAL);
+    real *r = plane(s, slot, RESIDUAL_VECTOR), *spread = plane(s, slot, SPREAD);
     double preconditioned = 0, square = 0;
     for (int n = 0; n < BLOCK_NODES; n++) {
-        x[n] += c->factor * p[n];
-        r[n] = precondition[n] > 0 ? r[n] - c->factor * image[n] : 0;
+        spread[n] += c->factor * image[n];
+        r[n] = precondition[n] > 0 ? r[n] - c->factor * (image[n] + diagonal[n] * p[n]) : 0;
         preconditioned += (double)r[n] * (double)(precondition[n] * r[n]);
         square += (double)r[n] * (double)r[n];
     }
@@ -293,13 +321,7 @@ static void turn_slot(void *context, int64_t slot, int worker) {
     const real *r = plane(s, slot, RESIDUAL_VECTOR), *precondition = plane(s, slot, PRECONDITIONER);
     real *p = plane(s, slot, SEARCH);
     for (int n = 0; n < BLOCK_NODES; n++) p[n] = precondition[n] * r[n] + c->factor * p[n];
-}
-
-/* search ← d, image ← 0: B d alone comes next. */
-static void solved_slot(void *context, int64_t slot, int worker) {
-    (void)worker;
-    memcpy(plane(context, slot, SEARCH), plane(context, slot, SOLUTION), BLOCK_NODES * sizeof(real));
-    memset(plane(context, slot, IMAGE), 0, BLOCK_NODES * sizeof(real));
+    memset(plane(s, slot, IMAGE), 0, BLOCK_NODES * sizeof(real));
 }
 
 /* Diffusion at the nodes, where the way back to the particles looks for it. */
@@ -307,8 +329,8 @@ static void spread_slot(void *context, int64_t slot, int worker) {
     (void)worker;
     solid *s = context;
     real *spread = plane(s, slot, SPREAD);
-    const real *image = plane(s, slot, IMAGE), *volume = plane(s, slot, VOLUME);
-    for (int n = 0; n < BLOCK_NODES; n++) spread[n] = volume[n] > 0 ? -image[n] / volume[n] : 0;
+    const real *volume = plane(s, slot, VOLUME);
+    for (int n = 0; n < BLOCK_NODES; n++) spread[n] = volume[n] > 0 ? -spread[n] / volume[n] : 0;
 }
 
 static void no_spread_slot(void *context, int64_t slot, int worker) {
@@ -330,19 +352,17 @@ static void sum_slots(const solid *s, double *first, double *second) {
 
 /* ---- conjugate gradients ----------------------------------------------------------------------------------------- */
 
-static void add_diffusion(solid *s) {
-    by_colour(s, 0, s->definition.laplacian == KERNEL_CUBIC ? apply_cubic : apply_quadratic);
-}
-
-static void apply_operator(solid *s) {
-    over_slots(s, diagonal_slot, s);
-    add_diffusion(s);
+/* IMAGE += B × SEARCH */
+static void apply_diffusion(solid *s) {
+    pass_context c = {.state = s};
+    colours_pass(s, s->definition.laplacian == KERNEL_CUBIC ? diffusion_cubic : diffusion_quadratic, &c);
 }
 
 status implicit_solve(solid *s, real dt, report *r) {
     if (!s->implicit_on) return STATUS_OK;
-    over_slots(s, clear_planes, s);
-    by_colour(s, dt, s->definition.laplacian == KERNEL_CUBIC ? system_cubic : system_quadratic);
+    pass_context system = {.state = s, .dt = dt};
+    over_slots(s, clear_sums, s);
+    colours_pass(s, s->definition.laplacian == KERNEL_CUBIC ? system_cubic : system_quadratic, &system);
     double right, square, rho, next, curvature, unused;
     over_slots(s, prepare_slot, s);
     sum_slots(s, &right, &unused);
@@ -351,7 +371,7 @@ status implicit_solve(solid *s, real dt, report *r) {
         over_slots(s, no_spread_slot, s);
         return STATUS_OK;
     }
-    apply_operator(s);
+    apply_diffusion(s);
     over_slots(s, residual_slot, s);
     sum_slots(s, &rho, &square);
     double enough = s->implicit_tolerance * s->implicit_tolerance * right;
@@ -359,7 +379,7 @@ status implicit_solve(solid *s, real dt, report *r) {
         if (i == ITERATION_LIMIT || !isfinite(square))
             return report_set(r, STATUS_DIVERGED, "implicit damage (effect damage): %d iterations leave a residual of %.3g of the right-hand side", i,
                               sqrt(square / right));
-        apply_operator(s);
+        apply_diffusion(s);
         over_slots(s, curvature_slot, s);
         sum_slots(s, &curvature, &unused);
         vector_context c = {s, (real)(rho / curvature)};
@@ -370,8 +390,6 @@ status implicit_solve(solid *s, real dt, report *r) {
         over_slots(s, turn_slot, &c);
         s->implicit_iterations++;
     }
-    over_slots(s, solved_slot, s);
-    add_diffusion(s);
     over_slots(s, spread_slot, s);
     return STATUS_OK;
 }
@@ -379,28 +397,33 @@ status implicit_solve(solid *s, real dt, report *r) {
 /* ---- back to particles ------------------------------------------------------------------------------------------- */
 
 void implicit_load_window(const solid *s, const solid_block *b, real *window) {
+    memset(window, 0, WINDOW_NODES * sizeof *window); /* see diffusion_block */
     exchange_plane(s, b, window, SPREAD, false);
 }
 
-SIMD_INLINE real gather_spread(const particle_kernel *k, int nodes, const real *window) {
-    real total = 0;
-    for (int i = 0; i < nodes; i++)
-        for (int j = 0; j < nodes; j++) {
-            const real *from = window + k->node + (i * WINDOW + j) * WINDOW;
-            real plain = 0;
-            for (int n = 0; n < nodes; n++) plain += k->w[2][n] * from[n];
-            total += k->w[0][i] * k->w[1][j] * plain;
+SIMD_INLINE void gather_spread(const tile_work *w, kernel_kind kind, bool weighed, const real *window) {
+    int nodes = kind == KERNEL_QUADRATIC ? 3 : 4;
+    if (!weighed) kernel_records(w->state, w->tile, w->scratch->records, kind);
+    for (int p = 0; p < w->tile->count; p++) {
+        const real *r = w->scratch->records + p * RECORD, *first = window + (int)r[G2P_NODE];
+        vec4 total = {0}, weight;
+        for (int i = 0; i < nodes; i++) {
+            vec4 sum = {0};
+            for (int j = 0; j < nodes; j++) {
+                vec4 row;
+                vec4_load(&row, first + i * STRIDE_X + j * STRIDE_Y);
+                vec4_add_scaled(&sum, &row, r[G2P_WY + j]);
+            }
+            vec4_add_scaled(&total, &sum, r[G2P_WX + i]);
         }
-    return total;
+        vec4_load(&weight, r + G2P_WZ);
+        total *= weight;
+        w->scratch->laplacian[p] = (total[0] + total[2]) + (total[1] + total[3]);
+    }
+    for (int p = w->tile->count; p < w->tile->pack_count * PACK; p++) w->scratch->laplacian[p] = 0;
 }
 
-void implicit_gather(const tile_work *w, const real *window) {
-    const solid *s = w->state;
-    if (s->definition.laplacian == KERNEL_QUADRATIC) {
-        FOR_EACH_KERNEL(s, w->tile, KERNEL_QUADRATIC, k,
-                        (void)pack; scratch_at(w->scratch->laplacian, 1, k, 0, 0)[within] = gather_spread(&kernel, 3, window))
-    } else {
-        FOR_EACH_KERNEL(s, w->tile, KERNEL_CUBIC, k,
-                        (void)pack; scratch_at(w->scratch->laplacian, 1, k, 0, 0)[within] = gather_spread(&kernel, 4, window))
-    }
+void implicit_gather(const tile_work *w, bool weighed, const real *window) {
+    if (w->state->definition.laplacian == KERNEL_QUADRATIC) gather_spread(w, KERNEL_QUADRATIC, weighed, window);
+    else gather_spread(w, KERNEL_CUBIC, weighed, window);
 }

@@ -45,6 +45,11 @@ SIMD_INLINE void kernel_weights(kernel_kind kernel, vec u, vec w[4]) {
     else cubic_weights(u, w);
 }
 
+SIMD_INLINE void kernel_curvatures(kernel_kind kernel, vec u, vec w[4]) {
+    if (kernel == KERNEL_QUADRATIC) quadratic_curvatures(w);
+    else cubic_curvatures(u, w);
+}
+
 /* The first node of each axis (in block coordinates) and the distances from it. */
 typedef struct kernel_place {
     vec3v base, u;
@@ -61,29 +66,57 @@ SIMD_INLINE vec window_index(vec3v base) {
     return (base.x - (real)WINDOW_LOW) * (real)STRIDE_X + (base.y - (real)WINDOW_LOW) * (real)STRIDE_Y + (base.z - (real)WINDOW_LOW);
 }
 
-/* Exchanges a block's window with the grid, node row by node row: `to_grid` adds, else loads. Only −1 … 6 or −2 … 7 is
- * touched: what colouring keeps apart. */
-SIMD_INLINE void exchange_window(const solid_block *b, real *window, real *grid, int reals, int slot_reals, bool wide, bool to_grid) {
-    int low = wide ? WINDOW_LOW : WINDOW_LOW + 1, high = wide ? WINDOW_LOW + WINDOW : WINDOW_LOW + WINDOW - 1;
-    for (int n = 0; n < NEIGHBOURS; n++) {
-        if (b->neighbour[n] < 0) continue;
-        int begin[3], end[3], o[3] = {n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1};
-        for (int c = 0; c < 3; c++) {
-            begin[c] = o[c] * BLOCK > low ? o[c] * BLOCK : low;
-            end[c] = o[c] * BLOCK + BLOCK < high ? o[c] * BLOCK + BLOCK : high;
-        }
-        real *slot = grid + (int64_t)b->neighbour[n] * slot_reals;
-        for (int x = begin[0]; x < end[0]; x++)
-            for (int y = begin[1]; y < end[1]; y++) {
-                real *in_window = window + (((x - WINDOW_LOW) * WINDOW + y - WINDOW_LOW) * WINDOW + begin[2] - WINDOW_LOW) * reals;
-                real *in_grid = slot + ((x - o[0] * BLOCK) * BLOCK * BLOCK + (y - o[1] * BLOCK) * BLOCK + begin[2] - o[2] * BLOCK) * reals;
-                int count = (end[2] - begin[2]) * reals;
-                if (to_grid)
-                    for (int i = 0; i < count; i++) in_grid[i] += in_window[i];
-                else
-                    for (int i = 0; i < count; i++) in_window[i] = in_grid[i];
-            }
+typedef enum row_exchange { ROW_ADD, ROW_LOAD, ROW_PREFETCH } row_exchange;
+
+/* `count` reals of a row: added to the grid, loaded from it, or their cache line called for. Fours are loaded before they are stored: what is
+ * exchanged does not overlap, which the compiler cannot know. */
+SIMD_INLINE void exchange_reals(real *window, real *grid, int count, row_exchange what) {
+    if (what == ROW_PREFETCH) {
+        __builtin_prefetch(grid, 1);
+        return;
     }
+    int fours = count / 4 * 4;
+    for (int i = 0; i < fours; i += 4) {
+        vec4 in_window, in_grid;
+        vec4_load(&in_window, window + i);
+        vec4_load(&in_grid, grid + i);
+        in_window += in_grid;
+        if (what == ROW_ADD) vec4_store(grid + i, &in_window);
+        else vec4_store(window + i, &in_grid);
+    }
+    for (int i = fours; i < count; i++) {
+        if (what == ROW_ADD) grid[i] += window[i];
+        else window[i] = grid[i];
+    }
+}
+
+/* Goes through a block's window row by row along z, each in the grid slots of three neighbours. Only −1 … 6 or −2 … 7 is touched: what
+ * colouring keeps apart. */
+SIMD_INLINE void exchange_rows(const solid_block *b, real *window, real *grid, int reals, int slot_reals, bool wide, row_exchange what) {
+    int low = wide ? WINDOW_LOW : WINDOW_LOW + 1, high = wide ? WINDOW_LOW + WINDOW : WINDOW_LOW + WINDOW - 1;
+    for (int x = low; x < high; x++)
+        for (int y = low; y < high; y++) {
+            int slot_x = (x + BLOCK) / BLOCK, slot_y = (y + BLOCK) / BLOCK, row = ((x & (BLOCK - 1)) * BLOCK + (y & (BLOCK - 1))) * BLOCK;
+            const int32_t *slot = b->neighbour + (slot_x * 3 + slot_y) * 3;
+            real *in_window = window + ((x - WINDOW_LOW) * STRIDE_X + (y - WINDOW_LOW) * STRIDE_Y - WINDOW_LOW) * reals;
+            real *in_grid = grid + row * reals;
+            if (slot[0] >= 0) exchange_reals(in_window + low * reals, in_grid + (int64_t)slot[0] * slot_reals + (BLOCK + low) * reals, -low * reals, what);
+            if (slot[1] >= 0) exchange_reals(in_window, in_grid + (int64_t)slot[1] * slot_reals, BLOCK * reals, what);
+            if (slot[2] >= 0) exchange_reals(in_window + BLOCK * reals, in_grid + (int64_t)slot[2] * slot_reals, (high - BLOCK) * reals, what);
+        }
+}
+
+/* Exchanges a block's window with the grid: `to_grid` adds, else loads. */
+SIMD_INLINE void exchange_window(const solid_block *b, real *window, real *grid, int reals, int slot_reals, bool wide, bool to_grid) {
+    if (wide) exchange_rows(b, window, grid, reals, slot_reals, true, to_grid ? ROW_ADD : ROW_LOAD);
+    else exchange_rows(b, window, grid, reals, slot_reals, false, to_grid ? ROW_ADD : ROW_LOAD);
+}
+
+/* A slot's Σ w d and Σ w, side by side, become its nodes' d in a row. */
+SIMD_INLINE void damage_from_sums(real *slot) {
+    real sums[BLOCK_NODES * DAMAGE_NODE];
+    memcpy(sums, slot, sizeof sums);
+    for (int n = 0; n < BLOCK_NODES; n++) slot[n] = sums[2 * n + 1] > 0 ? sums[2 * n] / sums[2 * n + 1] : 0;
 }
 
 /* Whether a pass with these kernels reaches −2 … 7 rather than −1 … 6. */

@@ -56,7 +56,7 @@ static int compare_keys(const void *a, const void *b) {
 
 status order_grow(void **array, int32_t *capacity, int32_t need, size_t size, const char *what, report *r) {
     if (need <= *capacity) return STATUS_OK;
-    int32_t wanted = need + need / 2 + 16;
+    int32_t wanted = need + need / 8 + 16;
     void *fresh = memory_resize(*array, (size_t)*capacity * size, (size_t)wanted * size);
     if (!fresh) return report_set(r, STATUS_SYSTEM, "out of memory for %s", what);
     *array = fresh;
@@ -92,19 +92,18 @@ static void radix_pass(const uint64_t *from, uint64_t *to, int64_t count, int sh
     for (int64_t i = 0; i < count; i++) to[start[(from[i] >> shift) & (DIGITS - 1)]++] = from[i];
 }
 
-void order_sort_keys(solid *s, int64_t count, int32_t blocks) {
-    for (int64_t i = 0; i < count; i++) {
-        uint64_t key = s->sort_keys[i];
-        s->sort_keys[i] = (key & 0x7ffffffffffu) | (uint64_t)s->block_ranks[key >> 43] << 43;
-    }
+void order_sort_keys(const solid *s, uint64_t *keys, int64_t count, int32_t blocks) {
+    for (int64_t i = 0; i < count; i++) keys[i] = (keys[i] & 0x7ffffffffffu) | (uint64_t)s->block_ranks[keys[i] >> 43] << 43;
+    uint64_t *from = keys, *to = keys + count;
     int bits = 11;
     while ((int64_t)1 << (bits - 11) < blocks) bits++;
     for (int done = 0; done < bits; done += DIGIT_BITS) {
-        radix_pass(s->sort_keys, s->sort_keys2, count, 32 + done);
-        uint64_t *swap = s->sort_keys;
-        s->sort_keys = s->sort_keys2;
-        s->sort_keys2 = swap;
+        radix_pass(from, to, count, 32 + done);
+        uint64_t *swap = from;
+        from = to;
+        to = swap;
     }
+    if (from != keys) memcpy(keys, from, (size_t)count * sizeof *keys);
 }
 
 status order_reserve_tiles(solid *s, int32_t tiles, int32_t blocks, report *r) {
@@ -117,38 +116,43 @@ status order_reserve_tiles(solid *s, int32_t tiles, int32_t blocks, report *r) {
 }
 
 /* Particles of key i's block and material that follow it, itself included. */
-static int64_t run_length(const solid *s, int64_t i, int64_t count) {
-    uint64_t group = s->sort_keys[i] >> 38;
+static int64_t run_length(const uint64_t *keys, int64_t i, int64_t count) {
     int64_t end = i;
-    while (end < count && s->sort_keys[end] >> 38 == group) end++;
+    while (end < count && keys[end] >> 38 == keys[i] >> 38) end++;
     return end - i;
 }
 
-status order_build_tiles(solid *s, int64_t count, report *r) {
+void order_add_block(solid *s, uint64_t key) {
+    solid_block *block = &s->blocks[s->block_count++];
+    *block = (solid_block){.first_tile = s->tile_count};
+    block_coordinate(key, block->coordinate);
+}
+
+void order_add_run(solid *s, int32_t material, int64_t particles) {
+    for (int64_t done = 0; done < particles; done += TILE_PARTICLES) {
+        int32_t here = (int32_t)(particles - done < TILE_PARTICLES ? particles - done : TILE_PARTICLES);
+        int32_t packs = (here + PACK - 1) / PACK;
+        s->tiles[s->tile_count++] = (solid_tile){.block = s->block_count - 1, .material = material,
+                                                 .first_pack = s->pack_count, .pack_count = packs, .count = here};
+        s->pack_count += packs;
+    }
+    s->blocks[s->block_count - 1].tile_count = s->tile_count - s->blocks[s->block_count - 1].first_tile;
+}
+
+status order_build_tiles(solid *s, const uint64_t *keys, int64_t count, report *r) {
     int32_t tiles = 0, blocks = 0;
     for (int64_t i = 0, n; i < count; i += n) {
-        n = run_length(s, i, count);
+        n = run_length(keys, i, count);
         tiles += (int32_t)((n + TILE_PARTICLES - 1) / TILE_PARTICLES);
-        blocks += i == 0 || ORDER_BLOCK(s->sort_keys[i]) != ORDER_BLOCK(s->sort_keys[i - 1]);
+        blocks += i == 0 || ORDER_BLOCK(keys[i]) != ORDER_BLOCK(keys[i - 1]);
     }
     status code = order_reserve_tiles(s, tiles, blocks, r);
     if (code != STATUS_OK) return code;
     s->tile_count = s->block_count = s->pack_count = 0;
     for (int64_t i = 0, n; i < count; i += n) {
-        n = run_length(s, i, count);
-        if (i == 0 || ORDER_BLOCK(s->sort_keys[i]) != ORDER_BLOCK(s->sort_keys[i - 1])) {
-            solid_block *block = &s->blocks[s->block_count++];
-            *block = (solid_block){.first_tile = s->tile_count};
-            block_coordinate(s->block_list[ORDER_BLOCK(s->sort_keys[i])], block->coordinate);
-        }
-        for (int64_t done = 0; done < n; done += TILE_PARTICLES) {
-            int32_t here = (int32_t)(n - done < TILE_PARTICLES ? n - done : TILE_PARTICLES);
-            int32_t packs = (here + PACK - 1) / PACK;
-            s->tiles[s->tile_count++] = (solid_tile){.block = s->block_count - 1, .material = ORDER_MATERIAL(s->sort_keys[i]),
-                                                     .first_pack = s->pack_count, .pack_count = packs, .count = here};
-            s->pack_count += packs;
-        }
-        s->blocks[s->block_count - 1].tile_count = s->tile_count - s->blocks[s->block_count - 1].first_tile;
+        n = run_length(keys, i, count);
+        if (i == 0 || ORDER_BLOCK(keys[i]) != ORDER_BLOCK(keys[i - 1])) order_add_block(s, s->block_list[ORDER_BLOCK(keys[i])]);
+        order_add_run(s, ORDER_MATERIAL(keys[i]), n);
     }
     return STATUS_OK;
 }

@@ -35,12 +35,16 @@ int32_t order_rank(const solid *s, uint64_t key);
 /* Ranks all keys ascending, leaving them in s->block_list, and says how many there are. */
 status order_rank_all(solid *s, int32_t *count, report *r);
 
-/* sort_keys[i] = entry << 43 | material << 38 | cell << 32 | source: replaces entries by ranks and sorts by all but the source,
- * stably. Result in s->sort_keys. */
-void order_sort_keys(solid *s, int64_t count, int32_t blocks);
+/* keys[i] = entry << 43 | material << 38 | cell << 32 | source: replaces entries by ranks and sorts by all but the source, stably. `keys` has
+ * room for 2 · count; the result is in the first half. */
+void order_sort_keys(const solid *s, uint64_t *keys, int64_t count, int32_t blocks);
 
 /* Cuts the sorted keys into blocks and tiles (s->tiles, s->blocks, s->pack_count). */
-status order_build_tiles(solid *s, int64_t count, report *r);
+status order_build_tiles(solid *s, const uint64_t *keys, int64_t count, report *r);
+
+/* The same one by one, where there is room: a block by its key, then runs of its particles of one material, materials ascending. */
+void order_add_block(solid *s, uint64_t key);
+void order_add_run(solid *s, int32_t material, int64_t particles);
 
 /* Room for that many tiles and blocks. */
 status order_reserve_tiles(solid *s, int32_t tiles, int32_t blocks, report *r);

@@ -8,41 +8,70 @@ static size_t field_bytes(const solid_field *f, int32_t packs) {
     return (size_t)packs * (size_t)f->components * PACK * sizeof(real);
 }
 
+/* Every array that holds packs: where its address is kept, and bytes a pack. */
+typedef struct pack_array {
+    void *address;
+    size_t bytes;
+} pack_array;
+
+enum { SORT_ARRAYS = 4, PACK_ARRAYS = FIELD_LIMIT + SORT_ARRAYS };
+
+static int list_pack_arrays(solid *s, pack_array list[PACK_ARRAYS]) {
+    int count = 0;
+    list[count++] = (pack_array){&s->id, PACK * sizeof *s->id};
+    list[count++] = (pack_array){&s->sort_codes, PACK * sizeof *s->sort_codes};
+    list[count++] = (pack_array){&s->sort_order, PACK * sizeof *s->sort_order};
+    list[count++] = (pack_array){&s->permute, PACK * sizeof *s->permute};
+    for (int i = 0; i < s->field_count; i++) list[count++] = (pack_array){&s->fields[i].data, field_bytes(&s->fields[i], 1)};
+    return count;
+}
+
+size_t particles_bytes(const solid *s) {
+    size_t bytes = PACK * (sizeof *s->id + sizeof *s->sort_codes + sizeof *s->sort_order + sizeof *s->permute);
+    for (int i = 0; i < s->field_count; i++) bytes += field_bytes(&s->fields[i], 1);
+    return bytes * (size_t)s->pack_capacity;
+}
+
+/* Pointers of several types are copied, not cast. */
+static void *array_of(const pack_array *a) {
+    void *data;
+    memcpy(&data, a->address, sizeof data);
+    return data;
+}
+
+static void set_array(const pack_array *a, void *data) {
+    memcpy(a->address, &data, sizeof data);
+}
+
+static void free_packs(const pack_array *list, int begin, int end, int32_t capacity) {
+    for (int i = begin; i < end; i++) {
+        memory_free(array_of(&list[i]), list[i].bytes * (size_t)capacity);
+        set_array(&list[i], NULL);
+    }
+}
+
 status particles_reserve(solid *s, int32_t packs, report *r) {
     if (packs <= s->pack_capacity) return STATUS_OK;
-    int32_t capacity = packs + packs / 8 + 8;
-    int32_t *id = memory_resize(s->id, (size_t)s->pack_capacity * PACK * sizeof *id, (size_t)capacity * PACK * sizeof *id);
-    if (!id) return report_set(r, STATUS_SYSTEM, "out of memory for %d packs of particles", capacity);
-    s->id = id;
-    for (int i = 0; i < s->field_count; i++) {
-        solid_field *f = &s->fields[i];
-        real *data = memory_resize(f->data, field_bytes(f, s->pack_capacity), field_bytes(f, capacity));
-        if (!data) {
-            /* Undo: every array must keep the size that pack_capacity says, or sized frees would lie. */
-            for (int j = 0; j <= i; j++) {
-                size_t old = j < i ? field_bytes(&s->fields[j], capacity) : field_bytes(f, s->pack_capacity);
-                memory_free(s->fields[j].data, old);
-                s->fields[j].data = NULL;
-            }
-            for (int j = i + 1; j < s->field_count; j++) {
-                memory_free(s->fields[j].data, field_bytes(&s->fields[j], s->pack_capacity));
-                s->fields[j].data = NULL;
-            }
-            memory_free(s->id, (size_t)capacity * PACK * sizeof *id);
-            s->id = NULL;
-            s->pack_capacity = 0;
-            s->pack_count = s->tile_count = s->block_count = 0;
-            return report_set(r, STATUS_SYSTEM, "out of memory for the field '%s'", f->name);
+    int32_t capacity = packs + packs / 32 + 8;
+    pack_array list[PACK_ARRAYS];
+    int count = list_pack_arrays(s, list);
+    for (int i = 0; i < count; i++) {
+        void *data = memory_resize(array_of(&list[i]), list[i].bytes * (size_t)s->pack_capacity, list[i].bytes * (size_t)capacity);
+        if (!data) { /* every array must have the size that pack_capacity says, or sized frees would lie */
+            free_packs(list, 0, i, capacity);
+            free_packs(list, i, count, s->pack_capacity);
+            s->pack_capacity = s->pack_count = s->tile_count = s->block_count = 0;
+            return report_set(r, STATUS_SYSTEM, "out of memory for %d packs of particles", capacity);
         }
-        f->data = data;
+        set_array(&list[i], data);
     }
     s->pack_capacity = capacity;
     return STATUS_OK;
 }
 
 void particles_free(solid *s) {
-    for (int i = 0; i < s->field_count; i++) memory_free(s->fields[i].data, field_bytes(&s->fields[i], s->pack_capacity));
-    memory_free(s->id, (size_t)s->pack_capacity * PACK * sizeof *s->id);
+    pack_array list[PACK_ARRAYS];
+    free_packs(list, 0, list_pack_arrays(s, list), s->pack_capacity);
     memory_free(s->tiles, (size_t)s->tile_capacity * sizeof *s->tiles);
     memory_free(s->tile_results, (size_t)s->result_capacity * sizeof *s->tile_results);
     memory_free(s->blocks, (size_t)s->block_capacity * sizeof *s->blocks);
@@ -50,9 +79,9 @@ void particles_free(solid *s) {
     memory_free(s->block_keys, (size_t)s->hash_capacity * sizeof *s->block_keys);
     memory_free(s->block_ranks, (size_t)s->hash_capacity * sizeof *s->block_ranks);
     memory_free(s->block_list, (size_t)s->block_list_capacity * sizeof *s->block_list);
-    memory_free(s->sort_keys, (size_t)s->count * sizeof *s->sort_keys);
-    memory_free(s->sort_keys2, (size_t)s->count * sizeof *s->sort_keys2);
-    memory_free(s->permute, (size_t)s->count * sizeof *s->permute);
+    memory_free(s->sort_moves, (size_t)s->sort_move_capacity * sizeof *s->sort_moves);
+    memory_free(s->sort_starts, (size_t)s->sort_start_capacity * sizeof *s->sort_starts);
+    memory_free(s->sort_materials, (size_t)s->sort_material_capacity * sizeof *s->sort_materials);
 }
 
 /* Splits a world coordinate into the block that owns it, the first node of its kernel within the block, and its distance (in
@@ -66,7 +95,7 @@ static status place(double x, double dx, double shift, int32_t *block, int32_t *
     return STATUS_OK;
 }
 
-static status load_keys(solid *s, bool *full, report *r) {
+static status load_keys(solid *s, uint64_t *keys, bool *full, report *r) {
     const solid_definition *d = &s->definition;
     double shift = kernel_shift(d->kernel), offset;
     order_clear_hash(s);
@@ -77,7 +106,7 @@ static status load_keys(solid *s, bool *full, report *r) {
                 return report_set(r, STATUS_INPUT, "particle %lld lies too far from the origin for this grid spacing", (long long)i);
         int64_t entry = order_insert(s, block_key(block));
         if ((*full = entry < 0)) return STATUS_OK;
-        s->sort_keys[i] = (uint64_t)entry << 43 | (uint64_t)d->material[i] << 38 |
+        keys[i] = (uint64_t)entry << 43 | (uint64_t)d->material[i] << 38 |
                           (uint64_t)((cell[0] * BLOCK + cell[1]) * BLOCK + cell[2]) << 32 | (uint64_t)i;
     }
     return STATUS_OK;
@@ -112,25 +141,26 @@ static void load_particle(solid *s, int32_t pack, int lane, int64_t i, bool aliv
 }
 
 /* Keys of all particles; the block table grows until they fit. */
-static status load_all_keys(solid *s, report *r) {
+static status load_all_keys(solid *s, uint64_t *keys, report *r) {
     int64_t guess = 1024;
     for (;;) {
         status code = order_reserve_hash(s, guess, r);
         if (code != STATUS_OK) return code;
         bool full = false;
-        if ((code = load_keys(s, &full, r)) != STATUS_OK) return code;
+        if ((code = load_keys(s, keys, &full, r)) != STATUS_OK) return code;
         if (!full) return STATUS_OK;
         guess *= 4;
     }
 }
 
-status particles_load(solid *s, report *r) {
-    status code = load_all_keys(s, r);
+/* keys: two arrays of `count`. */
+static status load_in_order(solid *s, uint64_t *keys, report *r) {
+    status code = load_all_keys(s, keys, r);
     if (code != STATUS_OK) return code;
     int32_t blocks;
     if ((code = order_rank_all(s, &blocks, r)) != STATUS_OK) return code;
-    order_sort_keys(s, s->count, blocks);
-    code = order_build_tiles(s, s->count, r);
+    order_sort_keys(s, keys, s->count, blocks);
+    code = order_build_tiles(s, keys, s->count, r);
     if (code == STATUS_OK) code = particles_reserve(s, s->pack_count, r);
     if (code != STATUS_OK) return code;
     int64_t next = 0;
@@ -139,10 +169,18 @@ status particles_load(solid *s, report *r) {
         int64_t first = next;
         for (int32_t p = 0; p < tile->pack_count * PACK; p++) {
             bool alive = p < tile->count;
-            load_particle(s, tile->first_pack + p / PACK, p % PACK, ORDER_SOURCE(s->sort_keys[alive ? next++ : first]), alive);
+            load_particle(s, tile->first_pack + p / PACK, p % PACK, ORDER_SOURCE(keys[alive ? next++ : first]), alive);
         }
     }
     return STATUS_OK;
+}
+
+status particles_load(solid *s, report *r) {
+    uint64_t *keys = memory_allocate_array((size_t)s->count, 2 * sizeof *keys);
+    if (!keys) return report_set(r, STATUS_SYSTEM, "out of memory for %lld particles", (long long)s->count);
+    status code = load_in_order(s, keys, r);
+    memory_free(keys, (size_t)s->count * 2 * sizeof *keys);
+    return code;
 }
 
 static const solid_field *find_field(const solid *s, const char *name) {

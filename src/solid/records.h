@@ -10,7 +10,7 @@
 /* Slots of a particle's record for scattering momentum and for gathering velocity. */
 enum {
     RECORD = 32,
-    P2G_BASE = 0, P2G_X = 4, P2G_Y = 8, P2G_Z = 12, P2G_WZ = 16, P2G_WX = 20, P2G_WY = 24, P2G_NODE = 28,
+    P2G_BASE = 0, P2G_X = 4, P2G_Y = 8, P2G_Z = 12, P2G_WZ = 16, P2G_WX = 20, P2G_WY = 24, P2G_NODE = 28, P2G_DAMAGE = 29 /* and 1 */,
     G2P_WX = 0, G2P_WY = 4, G2P_WZ = 8, G2P_OFFSET = 12, G2P_NODE = 15, G2P_OUT = 16,
 };
 
@@ -36,6 +36,21 @@ SIMD_INLINE void record_put(real *records, int first, int slot, vec value) {
     for (int lane = 0; lane < VEC_LANES; lane++) records[(first + lane) * RECORD + slot] = value[lane];
 }
 
+/* Weights and places of a tile's particles, as a gather wants them. */
+SIMD_INLINE void kernel_records(const solid *s, const solid_tile *tile, real *records, kernel_kind kernel) {
+    for (int k = 0; k < tile->pack_count; k++)
+        for (int part = 0; part < PACK_PARTS; part++) {
+            kernel_place at = kernel_locate(kernel, vec3v_load(&s->fields[FIELD_POSITION], tile->first_pack + k, part));
+            vec columns[G2P_OUT];
+            kernel_weights(kernel, at.u.x, columns + G2P_WX);
+            kernel_weights(kernel, at.u.y, columns + G2P_WY);
+            kernel_weights(kernel, at.u.z, columns + G2P_WZ);
+            columns[G2P_OFFSET] = at.u.x, columns[G2P_OFFSET + 1] = at.u.y, columns[G2P_OFFSET + 2] = at.u.z;
+            columns[G2P_NODE] = window_index(at.base);
+            records_store(records, k * PACK + part * VEC_LANES, 0, columns, G2P_OUT);
+        }
+}
+
 /* Adds the contributions of particles that share a first node to the window: accumulated in registers, stored once. */
 SIMD_INLINE int scatter_run(const real *records, int p, int count, int nodes, const node_row node_offset, real *window) {
     real node = records[p * RECORD + P2G_NODE];
@@ -45,13 +60,13 @@ SIMD_INLINE int scatter_run(const real *records, int p, int count, int nodes, co
         for (int j = 0; j < nodes; j++) sum[i * nodes + j] = row_load(first + (i * STRIDE_X + j * STRIDE_Y) * NODE);
     for (; p < count && records[p * RECORD + P2G_NODE] == node; p++) {
         const real *r = records + p * RECORD;
-        node_row along_y = row_repeat(r + P2G_Y), along_x = row_repeat(r + P2G_X), weight = row_spread(r + P2G_WZ);
-        node_row value = row_fma(row_repeat(r + P2G_Z), node_offset, row_repeat(r + P2G_BASE));
+        node_row weight = row_spread(r + P2G_WZ), along_x = row_multiply(weight, row_repeat(r + P2G_X)), along_y = row_multiply(weight, row_repeat(r + P2G_Y));
+        node_row value = row_multiply(weight, row_fma(row_repeat(r + P2G_Z), node_offset, row_repeat(r + P2G_BASE)));
         for (int i = 0; i < nodes; i++) {
-            node_row weight_x = row_scale(weight, r[P2G_WX + i]), here = value;
+            node_row here = row_scale(value, r[P2G_WX + i]), slope = row_scale(along_y, r[P2G_WX + i]);
             for (int j = 0; j < nodes; j++) {
-                sum[i * nodes + j] = row_fma(row_scale(weight_x, r[P2G_WY + j]), here, sum[i * nodes + j]);
-                here = row_add(here, along_y);
+                sum[i * nodes + j] = row_scale_add(here, r[P2G_WY + j], sum[i * nodes + j]);
+                here = row_add(here, slope);
             }
             value = row_add(value, along_x);
         }
@@ -79,14 +94,12 @@ SIMD_INLINE void gather_particle(real *r, int nodes, const node_row node_offset,
         along_x = row_scale_add(sum, weight * ((real)i - r[G2P_OFFSET + 0]), along_x);
         along_y = row_scale_add(moment, weight, along_y);
     }
-    node_row weight_z = row_spread(r + G2P_WZ), zero = {0};
+    node_row weight_z = row_spread(r + G2P_WZ);
     const real z[4] = {r[G2P_OFFSET + 2], r[G2P_OFFSET + 2], r[G2P_OFFSET + 2], r[G2P_OFFSET + 2]};
     node_row distance_z = row_scale_add(row_repeat(z), -1, node_offset);
-    node_row weighted = row_fma(plain, weight_z, zero);
-    row_fold(weighted, r + G2P_OUT);
-    row_fold(row_fma(along_x, weight_z, zero), r + G2P_OUT + 4);
-    row_fold(row_fma(along_y, weight_z, zero), r + G2P_OUT + 8);
-    row_fold(row_fma(weighted, distance_z, zero), r + G2P_OUT + 12);
+    node_row weighted = row_multiply(plain, weight_z);
+    const node_row moments[4] = {weighted, row_multiply(along_x, weight_z), row_multiply(along_y, weight_z), row_multiply(weighted, distance_z)};
+    row_fold(moments, r + G2P_OUT);
 }
 
 #endif

@@ -15,6 +15,8 @@
 #include "solid/solid.h"
 #include "solid/variant.h"
 
+#include <stdatomic.h>
+
 enum {
     PACK = 16,
     PACK_PARTS = PACK / VEC_LANES,
@@ -23,14 +25,15 @@ enum {
     BLOCK = 4,
     BLOCK_NODES = BLOCK * BLOCK * BLOCK,
     NODE = 4,            /* reals a node: momentum (velocity after the grid update) and mass */
-    DAMAGE_NODE = 2,     /* reals a node: Σ w d, Σ w; after the grid update their ratio in [0] */
+    DAMAGE_NODE = 2,     /* reals a node: Σ w d, Σ w; after the grid update a slot begins with their ratios */
     WINDOW_LOW = -2,     /* a window's first node, from the block's first node */
     WINDOW = 10,         /* nodes a side: reaches −2 … 7, enough for a cubic kernel centred by the quadratic's cells */
     WINDOW_NODES = WINDOW * WINDOW * WINDOW,
     NEIGHBOURS = 27,
     CONSTANTS = 16,      /* reals an effect may derive from a material's values */
     EFFECT_FIELDS = 16,
-    IMPLICIT_WINDOWS = 4, /* planes of nodes that a solve on the grid scatters together */
+    IMPLICIT_WINDOWS = 4, /* reals a node that a solve on the grid scatters together */
+    IMPLICIT_PLANES = 8,  /* reals a node that the implicit solve keeps */
 };
 
 /* The particle fields that the engine itself keeps; effects' fields follow. */
@@ -54,6 +57,8 @@ typedef struct solid_block {
     int32_t first_tile, tile_count;
     int32_t base_low[3], base_high[3]; /* first kernel nodes that a particle may have before the next sort */
     int32_t neighbour[NEIGHBOURS]; /* grid slots of the blocks around (x slowest); −1 where no kernel can reach */
+    uint8_t turn[NEIGHBOURS];      /* how many blocks of lower colours touch that slot */
+    bool damaged;                  /* some particle of it was at the start of the step */
 } solid_block;
 
 /* What a tile's stages leave for the pass that follows them: all [TILE_PACKS][…][PACK]. */
@@ -78,8 +83,8 @@ typedef struct solid_worker {
     real window[WINDOW_NODES * NODE];
     real old_window[WINDOW_NODES * NODE]; // FLIP only
     real damage_window[WINDOW_NODES * DAMAGE_NODE];
-    real implicit_window[WINDOW_NODES * IMPLICIT_WINDOWS]; // what is solved for on the grid: planes
     pass_clock clocks[PASSES];
+    real implicit_window[WINDOW_NODES * IMPLICIT_WINDOWS]; // of what is solved for on the grid
 } solid_worker;
 
 /* What the implicit solve needs of a material. */
@@ -152,12 +157,13 @@ struct solid {
     uint32_t material_mask[SOLID_MATERIALS];
     bool transfers_damage; /* some material has the damage effect */
     bool implicit_on;      /* some material's damage is implicit */
+    bool explicit_on;      /* some material's is not: the grid carries the damage channel */
     bool material_damaged[SOLID_MATERIALS], material_implicit[SOLID_MATERIALS]; /* by whichever damage model */
     implicit_material implicit_materials[SOLID_MATERIALS];
     double implicit_tolerance;
     int64_t implicit_solves, implicit_iterations;
     int32_t implicit_capacity;
-    real *implicit_grid;   // [implicit_capacity] planes of nodes, implicit.c
+    real *implicit_grid;   // [implicit_capacity][IMPLICIT_PLANES][BLOCK_NODES], implicit.c
     double *implicit_sums; // [implicit_capacity][2]
     fibre_constraint constraint;
 
@@ -175,21 +181,28 @@ struct solid {
     int32_t colour_start[28]; /* blocks of colour c are colour_blocks[colour_start[c] … colour_start[c+1]) */
     int colour_count;
     int32_t *colour_blocks; // [colour_capacity]
+    _Atomic int32_t *slot_touched; // [slot_capacity], blocks that have written to a slot in this pass by colours
 
     int32_t slot_count, slot_capacity;
     int32_t (*slot_coordinate)[3]; // [slot_capacity], in blocks, sorted
     real *grid;                    // [slot_capacity][BLOCK_NODES][NODE]
     real *old_grid;                // the same before forces, NULL unless the transfer is FLIP
-    real *damage_grid;             // [slot_capacity][BLOCK_NODES][DAMAGE_NODE], NULL unless damage is on
+    bool *slot_damaged;            // [slot_capacity], where damaged particles reach: the damage channel works there alone
+    real *damage_grid;             // [slot_capacity][BLOCK_NODES][DAMAGE_NODE], NULL unless some damage is explicit
 
     /* sorting: kept between sorts, grown when needed */
-    uint64_t *sort_keys, *sort_keys2; // [count]
+    uint16_t *sort_codes;             // [pack_capacity][PACK], neighbour, material and cell that a particle goes to
+    int32_t *sort_order;              // [pack_capacity][PACK], where from
+    int32_t (*sort_moves)[NEIGHBOURS]; // [sort_move_capacity], of old blocks: how many go to each neighbour, then where to
+    int32_t *sort_starts;             // [sort_start_capacity], of new blocks: their first particle
+    int32_t *sort_materials;          // [sort_material_capacity], of new blocks: the end of each material's particles
+    int32_t sort_move_capacity, sort_start_capacity, sort_material_capacity;
     uint64_t *block_keys;             // [hash capacity]
     int32_t *block_ranks;             // [hash capacity]
     int64_t hash_capacity, hash_used;
     uint64_t *block_list; // [block_list_capacity], sorted keys of the blocks in use
     int32_t block_list_capacity;
-    real *permute;                    // [count]
+    real *permute;                    // [pack_capacity][PACK], one component on its way
 
     solid_worker *workers; // [threads]
     tile_result *tile_results;   // [result_capacity]
@@ -269,9 +282,15 @@ SIMD_INLINE double scale_of(const solid *s, int field, int32_t pack, int lane) {
     return field <= 0 ? 1 : (double)field_at(&s->fields[field], pack, 0, 0)[lane];
 }
 
+/* Whether some kernel of this state is four nodes wide. */
+static inline bool kernels_have_cubic(const solid *s) {
+    return s->definition.kernel == KERNEL_CUBIC || (s->transfers_damage && s->definition.laplacian == KERNEL_CUBIC);
+}
+
 /* particles.c */
 status particles_reserve(solid *s, int32_t packs, report *r);
 status particles_load(solid *s, report *r);
+size_t particles_bytes(const solid *s); /* of all arrays of packs, sorting's included */
 void particles_free(solid *s);
 int particles_read(const solid *s, const char *field, double *out);
 /* sort.c */
@@ -281,6 +300,11 @@ status grid_build(solid *s, report *r);
 void grid_free(solid *s);
 void grid_update(solid *s, real dt);
 void grid_collect_results(solid *s); /* adds what the slots' boundaries did to the totals */
+/* colours.c: calls pass(context, block, next, worker) once for each block, `next` being the block that the same worker probably takes then
+ * (−1: none). Blocks that share nodes go in the order of their colours, so sums into nodes have one order; others do not wait. */
+typedef void coloured_pass(void *context, int32_t block, int32_t next, int worker);
+void colours_assign(solid *s);
+void colours_pass(solid *s, coloured_pass *pass, void *context);
 /* transfer.c */
 void transfer_to_grid(solid *s, real dt);
 void transfer_to_particles(solid *s, real dt);
@@ -291,7 +315,7 @@ status implicit_reserve(solid *s, int32_t slots, report *r);
 void implicit_free(solid *s);
 status implicit_solve(solid *s, real dt, report *r);
 void implicit_load_window(const solid *s, const solid_block *b, real *window);
-void implicit_gather(const tile_work *w, const real *window);
+void implicit_gather(const tile_work *w, bool weighed, const real *window); /* weighed: records hold this kernel's weights already */
 /* A particle's own step from dⁿ: driven by H, with the diffusion of the nodes' solution and rate = η/Δt. */
 SIMD_INLINE vec implicit_damage(vec d, vec H, vec spread, vec rate) {
     vec solved = vec_fma(rate, d, H + spread) / (H + (rate + 1));

@@ -16,12 +16,47 @@
 
 typedef struct transfer_context {
     solid *state;
-    const int32_t *blocks; /* of one colour, for the way to the grid */
     real dt;
 } transfer_context;
 
-/* Momentum records: base value at the kernel's first node and its slope along each axis; `forces` 0 leaves the stress out. */
-SIMD_INLINE void momentum_records(const tile_work *w, kernel_kind kernel, real density, real forces) {
+/* The packs of a block, and of the one that comes next, so that they are on their way to the cache when their turn comes. */
+typedef struct pack_stream {
+    const solid *state;
+    int32_t first, count, next_first, next_count;
+} pack_stream;
+
+static int32_t block_packs(const solid *s, int32_t block, int32_t *first) {
+    if (block < 0) return *first = 0;
+    const solid_block *b = &s->blocks[block];
+    const solid_tile *last = &s->tiles[b->first_tile + b->tile_count - 1];
+    *first = s->tiles[b->first_tile].first_pack;
+    return last->first_pack + last->pack_count - *first;
+}
+
+static pack_stream stream_packs(const solid *s, int32_t block, int32_t next) {
+    pack_stream stream = {.state = s};
+    stream.count = block_packs(s, block, &stream.first);
+    stream.next_count = block_packs(s, next, &stream.next_first);
+    return stream;
+}
+
+enum { CACHE_LINE = 64 };
+
+/* Calls for the pack that comes a tile's length after this one. */
+SIMD_INLINE void read_ahead(const pack_stream *stream, int32_t pack) {
+    int32_t ahead = pack - stream->first + TILE_PACKS;
+    if (ahead >= stream->count + stream->next_count) return;
+    pack = ahead < stream->count ? stream->first + ahead : stream->next_first + ahead - stream->count;
+    for (int i = 0; i < stream->state->field_count; i++) {
+        const solid_field *f = &stream->state->fields[i];
+        const char *at = (const char *)field_at(f, pack, 0, 0), *end = at + f->components * PACK * (int)sizeof(real);
+        for (; at < end; at += CACHE_LINE) __builtin_prefetch(at, 0, 2);
+    }
+}
+
+/* Momentum records: base value at the kernel's first node and its slope along each axis; `forces` 0 leaves the stress out. With `damage` also
+ * what scatter_damage takes. */
+SIMD_INLINE void momentum_records(const tile_work *w, kernel_kind kernel, real density, real forces, bool damage) {
     const solid *s = w->state;
     const solid_definition *d = &s->definition;
     real dx = (real)d->dx, inverse_d = (real)((kernel == KERNEL_QUADRATIC ? 4.0 : 3.0) / (d->dx * d->dx));
@@ -49,64 +84,93 @@ SIMD_INLINE void momentum_records(const tile_work *w, kernel_kind kernel, real d
             kernel_weights(kernel, at.u.y, columns + P2G_WY);
             kernel_weights(kernel, at.u.z, columns + P2G_WZ);
             columns[P2G_NODE] = window_index(at.base);
+            if (damage) columns[P2G_DAMAGE] = vec_load(field_at(&s->fields[s->damage_field], pack, 0, part)), columns[P2G_DAMAGE + 1] = vec_all(1);
             records_store(w->scratch->records, first, 0, columns, RECORD);
         }
 }
 
-SIMD_INLINE void scatter_momentum(const tile_work *w, int nodes, real *window) {
+SIMD_INLINE void scatter_momentum(const tile_work *w, const pack_stream *stream, int nodes, real *window) {
     const real offsets[4] = {0, 1, 2, 3};
     node_row node_offset = row_spread(offsets);
-    for (int p = 0; p < w->tile->count;) p = scatter_run(w->scratch->records, p, w->tile->count, nodes, node_offset, window);
+    for (int k = 0, p = 0; k < w->tile->pack_count; k++) {
+        read_ahead(stream, w->tile->first_pack + k);
+        while (p < w->tile->count && p < (k + 1) * PACK) p = scatter_run(w->scratch->records, p, w->tile->count, nodes, node_offset, window);
+    }
 }
 
-/* Slots of a particle's record for the damage channel: four w_z d beside four w_z; the other weights and curvatures; the first node. */
-enum {
-    DAMAGE_ROW = 0, DAMAGE_WX = 8, DAMAGE_WY = 12, DAMAGE_RECORD = 16,
-    CURVE_WX = 0, CURVE_WY = 4, CURVE_WZ = 8, CURVE_CX = 12, CURVE_CY = 16, CURVE_CZ = 20, CURVE_RECORD = 32, DAMAGE_NODE_AT = 24,
-};
-
+/* The damage channel: its weights are in the momentum's slots. */
 SIMD_INLINE void damage_records(const tile_work *w, kernel_kind kernel) {
     const solid *s = w->state;
     for (int k = 0; k < w->tile->pack_count; k++)
         for (int part = 0; part < PACK_PARTS; part++) {
             int32_t pack = w->tile->first_pack + k;
-            int first = k * PACK + part * VEC_LANES;
             kernel_place at = kernel_locate(kernel, vec3v_load(&s->fields[FIELD_POSITION], pack, part));
-            vec damage = vec_load(field_at(&s->fields[s->damage_field], pack, 0, part)), columns[DAMAGE_RECORD];
-            kernel_weights(kernel, at.u.z, columns + DAMAGE_ROW + 4);
-            for (int n = 0; n < 4; n++) columns[DAMAGE_ROW + n] = columns[DAMAGE_ROW + 4 + n] * damage;
-            kernel_weights(kernel, at.u.x, columns + DAMAGE_WX);
-            kernel_weights(kernel, at.u.y, columns + DAMAGE_WY);
-            records_store(w->scratch->records, first, 0, columns, DAMAGE_RECORD);
-            record_put(w->scratch->records, first, DAMAGE_NODE_AT, window_index(at.base));
+            const vec zero = vec_all(0);
+            vec columns[RECORD - P2G_WZ] = {zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, window_index(at.base),
+                                            vec_load(field_at(&s->fields[s->damage_field], pack, 0, part)), vec_all(1), zero};
+            kernel_weights(kernel, at.u.z, columns + P2G_WZ - P2G_WZ);
+            kernel_weights(kernel, at.u.x, columns + P2G_WX - P2G_WZ);
+            kernel_weights(kernel, at.u.y, columns + P2G_WY - P2G_WZ);
+            records_store(w->scratch->records, k * PACK + part * VEC_LANES, P2G_WZ, columns, RECORD - P2G_WZ);
         }
 }
 
-/* Σ w d and Σ w of particles that share a first node, in two planes of the damage window. */
+/* Σ w d and Σ w, side by side, of particles that share a first node. */
 SIMD_INLINE int scatter_damage_run(const real *records, int p, int count, int nodes, real *window) {
-    real node = records[p * RECORD + DAMAGE_NODE_AT], *first = window + (int)node;
-    vec8 sum[16] = {{0}};
-    for (; p < count && records[p * RECORD + DAMAGE_NODE_AT] == node; p++) {
+    real node = records[p * RECORD + P2G_NODE], *first = window + (int)node * DAMAGE_NODE;
+    vec8 sum[16];
+    for (int i = 0; i < nodes; i++)
+        for (int j = 0; j < nodes; j++) vec8_load(&sum[i * nodes + j], first + (i * STRIDE_X + j * STRIDE_Y) * DAMAGE_NODE);
+    for (; p < count && records[p * RECORD + P2G_NODE] == node; p++) {
         const real *r = records + p * RECORD;
-        vec8 row;
-        vec8_load(&row, r + DAMAGE_ROW);
+        vec8 row, value;
+        vec8_doubled(&row, r + P2G_WZ);
+        vec8_pairs(&value, r + P2G_DAMAGE);
+        row *= value;
         for (int i = 0; i < nodes; i++) {
-            vec8 here = row * r[DAMAGE_WX + i];
-            for (int j = 0; j < nodes; j++) sum[i * nodes + j] += here * r[DAMAGE_WY + j];
+            vec8 here = row * r[P2G_WX + i];
+            for (int j = 0; j < nodes; j++) vec8_add_scaled(&sum[i * nodes + j], &here, r[P2G_WY + j]);
         }
     }
     for (int i = 0; i < nodes; i++)
-        for (int j = 0; j < nodes; j++) {
-            real *sums = first + i * STRIDE_X + j * STRIDE_Y, *weights = sums + WINDOW_NODES;
-            for (int n = 0; n < 4; n++) sums[n] += sum[i * nodes + j][n];
-            for (int n = 0; n < 4; n++) weights[n] += sum[i * nodes + j][4 + n];
-        }
+        for (int j = 0; j < nodes; j++) vec8_store(first + (i * STRIDE_X + j * STRIDE_Y) * DAMAGE_NODE, &sum[i * nodes + j]);
     return p;
 }
 
-SIMD_INLINE void scatter_damage(const tile_work *w, kernel_kind kernel, int nodes, real *window) {
-    damage_records(w, kernel);
-    for (int p = 0; p < w->tile->count;) p = scatter_damage_run(w->scratch->records, p, w->tile->count, nodes, window);
+/* With the momentum's own kernel its records serve both. */
+SIMD_INLINE void scatter_damage(const tile_work *w, kernel_kind kernel, kernel_kind momentum, real *window) {
+    if (kernel != momentum) damage_records(w, kernel);
+    for (int p = 0; p < w->tile->count;)
+        p = scatter_damage_run(w->scratch->records, p, w->tile->count, kernel == KERNEL_QUADRATIC ? 3 : 4, window);
+}
+
+/* Where nothing is damaged, d and Δd are 0 and need no transfer: slots that damaged particles can reach are marked, and blocks at such slots
+ * take part. */
+static void find_damage(void *context, int64_t block, int worker) {
+    (void)worker;
+    solid *s = context;
+    solid_block *b = &s->blocks[block];
+    const solid_field *damage = &s->fields[s->damage_field];
+    vec_mask found = vec_all(0) != 0;
+    for (int32_t t = b->first_tile; t < b->first_tile + b->tile_count; t++)
+        for (int32_t pack = s->tiles[t].first_pack; pack < s->tiles[t].first_pack + s->tiles[t].pack_count; pack++)
+            for (int part = 0; part < PACK_PARTS; part++) found |= vec_load(field_at(damage, pack, 0, part)) != 0;
+    b->damaged = vec_any(found);
+}
+
+static void mark_damage(solid *s) {
+    parallel_for(s->threads, s->block_count, 16, find_damage, s);
+    memset(s->slot_damaged, 0, (size_t)s->slot_count * sizeof *s->slot_damaged);
+    for (int32_t b = 0; b < s->block_count; b++)
+        for (int n = 0; s->blocks[b].damaged && n < NEIGHBOURS; n++)
+            if (s->blocks[b].neighbour[n] >= 0) s->slot_damaged[s->blocks[b].neighbour[n]] = true;
+}
+
+static bool sees_damage(const solid *s, const solid_block *b) {
+    if (!s->damage_grid) return false;
+    for (int n = 0; n < NEIGHBOURS; n++)
+        if (b->neighbour[n] >= 0 && s->slot_damaged[b->neighbour[n]]) return true;
+    return false;
 }
 
 static double seconds_now(void) {
@@ -156,57 +220,49 @@ static tile_work begin_tile(solid *s, int32_t t, int worker, real dt) {
     return w;
 }
 
-SIMD_INLINE void block_to_grid(transfer_context *t, int32_t block_index, int worker, kernel_kind kernel, kernel_kind laplacian, bool damage) {
+SIMD_INLINE void block_to_grid(const transfer_context *t, int32_t block_index, int32_t next, int worker, kernel_kind kernel, kernel_kind laplacian, bool damage) {
     solid *s = t->state;
     const solid_block *b = &s->blocks[block_index];
     solid_worker *own = &s->workers[worker];
     bool wide = kernels_are_wide(kernel, laplacian, damage);
     int nodes = kernel == KERNEL_QUADRATIC ? 3 : 4;
+    pack_stream stream = stream_packs(s, block_index, next);
+    exchange_rows(b, own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, ROW_PREFETCH);
     memset(own->window, 0, sizeof own->window);
     if (s->old_grid) memset(own->old_window, 0, sizeof own->old_window);
-    if (damage) memset(own->damage_window, 0, sizeof own->damage_window);
+    bool channel = damage && sees_damage(s, b);
+    if (channel) memset(own->damage_window, 0, sizeof own->damage_window);
     for (int32_t i = b->first_tile; i < b->first_tile + b->tile_count; i++) {
         tile_work w = begin_tile(s, i, worker, t->dt);
         fill(w.scratch->kirchhoff, w.tile->pack_count * 6 * PACK, 0);
         CALL_STAGE(&w, stress);
         real density = (real)s->definition.materials[w.tile->material].density;
         if (s->old_grid) {
-            momentum_records(&w, kernel, density, 0);
-            scatter_momentum(&w, nodes, own->old_window);
+            momentum_records(&w, kernel, density, 0, false);
+            scatter_momentum(&w, &stream, nodes, own->old_window);
         }
-        momentum_records(&w, kernel, density, 1);
-        scatter_momentum(&w, nodes, own->window);
-        if (damage && s->material_damaged[w.tile->material])
-            scatter_damage(&w, laplacian, laplacian == KERNEL_QUADRATIC ? 3 : 4, own->damage_window);
+        bool takes_part = channel && s->material_damaged[w.tile->material];
+        momentum_records(&w, kernel, density, 1, takes_part && kernel == laplacian);
+        scatter_momentum(&w, &stream, nodes, own->window);
+        if (takes_part) scatter_damage(&w, laplacian, kernel, own->damage_window);
     }
     exchange_window(b, own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, true);
     if (s->old_grid) exchange_window(b, own->old_window, s->old_grid, NODE, BLOCK_NODES * NODE, wide, true);
-    if (!damage) return;
-    exchange_window(b, own->damage_window, s->damage_grid, 1, BLOCK_NODES * DAMAGE_NODE, wide, true);
-    exchange_window(b, own->damage_window + WINDOW_NODES, s->damage_grid + BLOCK_NODES, 1, BLOCK_NODES * DAMAGE_NODE, wide, true);
+    if (!channel) return;
+    exchange_window(b, own->damage_window, s->damage_grid, DAMAGE_NODE, BLOCK_NODES * DAMAGE_NODE, wide, true);
 }
 
 /* ---- grid to particles ------------------------------------------------------------------------------------------- */
 
-SIMD_INLINE void gather_weights(const tile_work *w, kernel_kind kernel) {
-    real *records = w->scratch->records;
-    for (int k = 0; k < w->tile->pack_count; k++)
-        for (int part = 0; part < PACK_PARTS; part++) {
-            int first = k * PACK + part * VEC_LANES;
-            kernel_place at = kernel_locate(kernel, vec3v_load(&w->state->fields[FIELD_POSITION], w->tile->first_pack + k, part));
-            vec columns[G2P_OUT];
-            kernel_weights(kernel, at.u.x, columns + G2P_WX);
-            kernel_weights(kernel, at.u.y, columns + G2P_WY);
-            kernel_weights(kernel, at.u.z, columns + G2P_WZ);
-            columns[G2P_OFFSET] = at.u.x, columns[G2P_OFFSET + 1] = at.u.y, columns[G2P_OFFSET + 2] = at.u.z;
-            columns[G2P_NODE] = window_index(at.base);
-            records_store(records, first, 0, columns, G2P_OUT);
-        }
-}
+enum { G2P_CHUNK = 2 /* blocks that a worker takes at once */ };
 
-SIMD_INLINE void gather_tile(const tile_work *w, kernel_kind kernel, const node_row node_offset, const real *window) {
-    for (int p = 0; p < w->tile->count; p++)
-        gather_particle(w->scratch->records + p * RECORD, kernel == KERNEL_QUADRATIC ? 3 : 4, node_offset, window);
+SIMD_INLINE void gather_tile(const tile_work *w, const pack_stream *stream, kernel_kind kernel, const node_row node_offset, const real *window) {
+    for (int k = 0; k < w->tile->pack_count; k++) {
+        int end = (k + 1) * PACK < w->tile->count ? (k + 1) * PACK : w->tile->count;
+        read_ahead(stream, w->tile->first_pack + k);
+        for (int p = k * PACK; p < end; p++)
+            gather_particle(w->scratch->records + p * RECORD, kernel == KERNEL_QUADRATIC ? 3 : 4, node_offset, window);
+    }
     for (int p = w->tile->count; p < w->tile->pack_count * PACK; p++)
         memset(w->scratch->records + p * RECORD + G2P_OUT, 0, 16 * sizeof(real));
 }
@@ -229,41 +285,51 @@ SIMD_INLINE vec3v flip_velocity(const tile_work *w, int k, int part, vec3v grid)
     return (vec3v){grid.x + ratio * (own.x - old[0]), grid.y + ratio * (own.y - old[1]), grid.z + ratio * (own.z - old[2])};
 }
 
+/* Slots of a particle's record for the Laplacian: weights as in a gather's, then curvatures. */
+enum { CURVE = 16 };
+
 SIMD_INLINE void curve_records(const tile_work *w, kernel_kind kernel) {
     for (int k = 0; k < w->tile->pack_count; k++)
         for (int part = 0; part < PACK_PARTS; part++) {
-            int first = k * PACK + part * VEC_LANES;
             kernel_place at = kernel_locate(kernel, vec3v_load(&w->state->fields[FIELD_POSITION], w->tile->first_pack + k, part));
-            vec u[3] = {at.u.x, at.u.y, at.u.z}, columns[CURVE_RECORD] = {vec_all(0)};
-            for (int axis = 0; axis < 3; axis++) {
-                kernel_weights(kernel, u[axis], columns + CURVE_WX + 4 * axis);
-                if (kernel == KERNEL_QUADRATIC) quadratic_curvatures(columns + CURVE_CX + 4 * axis);
-                else cubic_curvatures(u[axis], columns + CURVE_CX + 4 * axis);
-            }
-            columns[DAMAGE_NODE_AT] = window_index(at.base);
-            records_store(w->scratch->records, first, 0, columns, CURVE_RECORD);
+            vec columns[RECORD] = {vec_all(0)};
+            kernel_weights(kernel, at.u.x, columns + G2P_WX);
+            kernel_weights(kernel, at.u.y, columns + G2P_WY);
+            kernel_weights(kernel, at.u.z, columns + G2P_WZ);
+            kernel_curvatures(kernel, at.u.x, columns + CURVE);
+            kernel_curvatures(kernel, at.u.y, columns + CURVE + 4);
+            kernel_curvatures(kernel, at.u.z, columns + CURVE + 8);
+            columns[G2P_NODE] = window_index(at.base);
+            records_store(w->scratch->records, k * PACK + part * VEC_LANES, 0, columns, RECORD);
         }
 }
 
-/* Δd at each particle from the nodal damage: N'' of one axis times N of the others, rows along z summed first. */
-SIMD_INLINE void gather_laplacian(const tile_work *w, kernel_kind kernel, int nodes, const real *window) {
+/* Δd at each particle from the nodal damage: N'' of one axis times N of the others, by separable sums, y first. A quadratic kernel's N'' are
+ * the same everywhere: where momentum has it too, `weighed`, the gather's own records hold all that is needed. */
+SIMD_INLINE void gather_laplacian(const tile_work *w, kernel_kind kernel, bool weighed, const real *window) {
+    static const real even[12] = {1, -2, 1, 0, 1, -2, 1, 0, 1, -2, 1, 0};
     real scale = (real)(1 / (w->state->definition.dx * w->state->definition.dx));
-    curve_records(w, kernel);
+    int nodes = kernel == KERNEL_QUADRATIC ? 3 : 4;
+    if (!weighed) curve_records(w, kernel);
     for (int p = 0; p < w->tile->count; p++) {
-        const real *r = w->scratch->records + p * RECORD, *first = window + (int)r[DAMAGE_NODE_AT];
-        vec4 plain = {0}, curved = {0}; /* what multiplies N'' and N along z */
-        for (int i = 0; i < nodes; i++)
+        const real *r = w->scratch->records + p * RECORD, *first = window + (int)r[G2P_NODE], *curve = weighed ? even : r + CURVE;
+        vec4 plain = {0}, curved = {0}, bend, weight; /* plain, curved: what multiplies N'' and N along z */
+        for (int i = 0; i < nodes; i++) {
+            vec4 sum = {0}, bent = {0};
             for (int j = 0; j < nodes; j++) {
                 vec4 d;
                 vec4_load(&d, first + i * STRIDE_X + j * STRIDE_Y);
-                plain += d * (r[CURVE_WX + i] * r[CURVE_WY + j]);
-                curved += d * (r[CURVE_CX + i] * r[CURVE_WY + j] + r[CURVE_WX + i] * r[CURVE_CY + j]);
+                vec4_add_scaled(&sum, &d, r[G2P_WY + j]);
+                vec4_add_scaled(&bent, &d, curve[4 + j]);
             }
-        vec4 bend, weight;
-        vec4_load(&bend, r + CURVE_CZ);
-        vec4_load(&weight, r + CURVE_WZ);
-        vec4 sum = plain * bend + curved * weight;
-        w->scratch->laplacian[p] = ((sum[0] + sum[1]) + (sum[2] + sum[3])) * scale;
+            vec4_add_scaled(&plain, &sum, r[G2P_WX + i]);
+            vec4_add_scaled(&curved, &sum, curve[i]);
+            vec4_add_scaled(&curved, &bent, r[G2P_WX + i]);
+        }
+        vec4_load(&bend, curve + 8);
+        vec4_load(&weight, r + G2P_WZ);
+        vec4 total = plain * bend + curved * weight;
+        w->scratch->laplacian[p] = ((total[0] + total[1]) + (total[2] + total[3])) * scale;
     }
     for (int p = w->tile->count; p < w->tile->pack_count * PACK; p++) w->scratch->laplacian[p] = 0;
 }
@@ -356,30 +422,37 @@ static void limit_momentum(tile_work *w) {
     w->result->limit[EFFECT_elastic] = vec_largest(fastest) * (real)(1 / s->definition.dx);
 }
 
-SIMD_INLINE void block_to_particles(transfer_context *t, int32_t block_index, int worker, kernel_kind kernel, kernel_kind laplacian, bool damage) {
+SIMD_INLINE void block_to_particles(const transfer_context *t, int32_t block_index, int worker, kernel_kind kernel, kernel_kind laplacian, bool damage) {
     solid *s = t->state;
     const solid_block *b = &s->blocks[block_index];
     solid_worker *own = &s->workers[worker];
     bool wide = kernels_are_wide(kernel, laplacian, damage);
     const real offsets[4] = {0, 1, 2, 3};
     node_row node_offset = row_spread(offsets);
+    bool follows = block_index + 1 < s->block_count && (s->threads == 1 || (block_index + 1) % G2P_CHUNK != 0);
+    pack_stream stream = stream_packs(s, block_index, follows ? block_index + 1 : -1);
     exchange_window(b, own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, false);
     if (s->old_grid) exchange_window(b, own->old_window, s->old_grid, NODE, BLOCK_NODES * NODE, wide, false);
-    if (damage) exchange_window(b, own->damage_window, s->damage_grid, 1, BLOCK_NODES * DAMAGE_NODE, wide, false);
+    bool channel = damage && sees_damage(s, b);
+    if (channel) exchange_window(b, own->damage_window, s->damage_grid, 1, BLOCK_NODES * DAMAGE_NODE, wide, false);
     if (damage && s->implicit_on) implicit_load_window(s, b, own->implicit_window);
+    if (follows) exchange_rows(&s->blocks[block_index + 1], own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, ROW_PREFETCH);
     for (int32_t i = b->first_tile; i < b->first_tile + b->tile_count; i++) {
         tile_work w = {.state = s, .tile = &s->tiles[i], .scratch = &own->tile, .result = &s->tile_results[i], .dt = t->dt};
         memset(w.result, 0, sizeof *w.result);
-        if (damage && s->material_implicit[w.tile->material])
-            implicit_gather(&w, own->implicit_window);
-        else if (damage && s->material_damaged[w.tile->material])
-            gather_laplacian(&w, laplacian, laplacian == KERNEL_QUADRATIC ? 3 : 4, own->damage_window);
-        gather_weights(&w, kernel);
+        bool weighed = damage && kernel == KERNEL_QUADRATIC && laplacian == KERNEL_QUADRATIC;
+        if (weighed) kernel_records(s, w.tile, w.scratch->records, kernel);
+        if (channel && s->material_damaged[w.tile->material] && !s->material_implicit[w.tile->material])
+            gather_laplacian(&w, laplacian, weighed, own->damage_window);
+        else if (damage)
+            fill(w.scratch->laplacian, w.tile->pack_count * PACK, 0);
+        if (damage && s->material_implicit[w.tile->material]) implicit_gather(&w, weighed, own->implicit_window);
+        if (!weighed) kernel_records(s, w.tile, w.scratch->records, kernel);
         if (s->old_grid) {
-            gather_tile(&w, kernel, node_offset, own->old_window);
+            gather_tile(&w, &stream, kernel, node_offset, own->old_window);
             keep_old_velocity(&w);
         }
-        gather_tile(&w, kernel, node_offset, own->window);
+        gather_tile(&w, &stream, kernel, node_offset, own->window);
         advance_particles(&w, kernel);
         CALL_STAGE(&w, update);
         limit_momentum(&w);
@@ -389,10 +462,10 @@ SIMD_INLINE void block_to_particles(transfer_context *t, int32_t block_index, in
 /* ---- one instance a combination of kernels ----------------------------------------------------------------------- */
 
 #define INSTANCE(name, kernel, laplacian, damage)                                                                      \
-    static void p2g_##name(void *t, int64_t i, int worker) {                                                           \
+    static void p2g_##name(void *t, int32_t block, int32_t next, int worker) {                                         \
         transfer_context *c = t;                                                                                       \
-        double start = start_look(c->state, i, worker, PASS_P2G);                                                      \
-        block_to_grid(c, c->blocks[i], worker, kernel, laplacian, damage);                                             \
+        double start = start_look(c->state, block, worker, PASS_P2G);                                                  \
+        block_to_grid(c, block, next, worker, kernel, laplacian, damage);                                              \
         end_look(c->state, worker, PASS_P2G, start);                                                                   \
     }                                                                                                                  \
     static void g2p_##name(void *t, int64_t i, int worker) {                                                           \
@@ -409,10 +482,9 @@ INSTANCE(quadratic_cubic, KERNEL_QUADRATIC, KERNEL_CUBIC, true)
 INSTANCE(cubic_cubic, KERNEL_CUBIC, KERNEL_CUBIC, true)
 INSTANCE(cubic_quadratic, KERNEL_CUBIC, KERNEL_QUADRATIC, true)
 
-typedef void block_pass(void *context, int64_t i, int worker);
-static block_pass *const to_grid[2][3] = {{p2g_quadratic, p2g_quadratic_quadratic, p2g_quadratic_cubic},
+static coloured_pass *const to_grid[2][3] = {{p2g_quadratic, p2g_quadratic_quadratic, p2g_quadratic_cubic},
                                           {p2g_cubic, p2g_cubic_quadratic, p2g_cubic_cubic}};
-static block_pass *const to_particles[2][3] = {{g2p_quadratic, g2p_quadratic_quadratic, g2p_quadratic_cubic},
+static void (*const to_particles[2][3])(void *, int64_t, int) = {{g2p_quadratic, g2p_quadratic_quadratic, g2p_quadratic_cubic},
                                                {g2p_cubic, g2p_cubic_quadratic, g2p_cubic_cubic}};
 
 static int damage_instance(const solid *s) {
@@ -431,18 +503,14 @@ static void clear_slot(void *context, int64_t slot, int worker) {
 void transfer_to_grid(solid *s, real dt) {
     parallel_for(s->threads, s->slot_count, 64, clear_slot, s);
     s->looks++;
+    if (s->damage_grid) mark_damage(s);
     transfer_context t = {.state = s, .dt = dt};
-    block_pass *pass = to_grid[s->definition.kernel == KERNEL_CUBIC][damage_instance(s)];
-    for (int colour = 0; colour < s->colour_count; colour++) {
-        t.blocks = s->colour_blocks + s->colour_start[colour];
-        parallel_for(s->threads, s->colour_start[colour + 1] - s->colour_start[colour], 1, pass, &t);
-    }
+    colours_pass(s, to_grid[s->definition.kernel == KERNEL_CUBIC][damage_instance(s)], &t);
 }
 
 void transfer_to_particles(solid *s, real dt) {
     transfer_context t = {.state = s, .dt = dt};
-    block_pass *pass = to_particles[s->definition.kernel == KERNEL_CUBIC][damage_instance(s)];
-    parallel_for(s->threads, s->block_count, 2, pass, &t);
+    parallel_for(s->threads, s->block_count, G2P_CHUNK, to_particles[s->definition.kernel == KERNEL_CUBIC][damage_instance(s)], &t);
 }
 
 static void limit_tile(void *context, int64_t i, int worker) {

@@ -147,9 +147,12 @@ static void the_operator_is_symmetric_positive_definite(void) {
                 bool used = plane(state, (int64_t)n / BLOCK_NODES, DIAGONAL)[n % BLOCK_NODES] > 0;
                 x[i][n] = used ? (double)((trial * 7919 + (uint64_t)i * 104729 + n * 2654435761u) % 1000003) / 500001.5 - 1 : 0;
                 plane(state, (int64_t)n / BLOCK_NODES, SEARCH)[n % BLOCK_NODES] = x[i][n];
+                plane(state, (int64_t)n / BLOCK_NODES, IMAGE)[n % BLOCK_NODES] = 0;
             }
-            apply_operator(state);
-            for (size_t n = 0; n < values; n++) Ax[i][n] = plane(state, (int64_t)n / BLOCK_NODES, IMAGE)[n % BLOCK_NODES];
+            apply_diffusion(state);
+            for (size_t n = 0; n < values; n++)
+                Ax[i][n] = plane(state, (int64_t)n / BLOCK_NODES, IMAGE)[n % BLOCK_NODES] +
+                           plane(state, (int64_t)n / BLOCK_NODES, DIAGONAL)[n % BLOCK_NODES] * x[i][n];
         }
         for (size_t n = 0; n < values; n++) {
             products[0] += x[0][n] * Ax[1][n], products[1] += x[1][n] * Ax[0][n];

@@ -27,17 +27,16 @@ static void update_again(solid *s, const real *d, const real *H, double dt) {
     size_t bytes = (size_t)s->pack_count * PACK * sizeof(real);
     memcpy(s->fields[s->damage_field].data, d, bytes);
     memcpy(s->fields[s->history_field].data, H, bytes);
+    report r;
+    if (!s->sorted) CHECK(particles_sort(s, &r) == STATUS_OK); /* a kernel may be about to leave its block's window */
     transfer_to_grid(s, 0);
-    for (int64_t slot = 0; slot < s->slot_count; slot++) {
-        real *value = s->damage_grid + slot * BLOCK_NODES * DAMAGE_NODE, *weight = value + BLOCK_NODES;
-        for (int n = 0; n < BLOCK_NODES; n++) value[n] = weight[n] > 0 ? value[n] / weight[n] : 0;
-    }
+    for (int64_t slot = 0; slot < s->slot_count; slot++) damage_from_sums(s->damage_grid + slot * BLOCK_NODES * DAMAGE_NODE);
     solid_worker *own = &s->workers[0];
     for (int32_t b = 0; b < s->block_count; b++) {
         exchange_window(&s->blocks[b], own->damage_window, s->damage_grid, 1, BLOCK_NODES * DAMAGE_NODE, true, false);
         for (int32_t t = s->blocks[b].first_tile; t < s->blocks[b].first_tile + s->blocks[b].tile_count; t++) {
             tile_work w = {.state = s, .tile = &s->tiles[t], .scratch = &own->tile, .result = &s->tile_results[t], .dt = dt};
-            gather_laplacian(&w, KERNEL_CUBIC, 4, own->damage_window);
+            gather_laplacian(&w, KERNEL_CUBIC, false, own->damage_window);
             CALL_STAGE(&w, update);
         }
     }

@@ -65,40 +65,21 @@ static void degrade(tile_work *w) {
         }
 }
 
-/* R a for one family: Σ (n_i · F a)/s_i n_i. */
-SIMD_INLINE vec3v rotated_fibre(const eigen3v *e, vec3v inverse_stretch, vec3v f) {
-    vec c1 = vec3v_dot(e->first, f) * inverse_stretch.x, c2 = vec3v_dot(e->second, f) * inverse_stretch.y,
-        c3 = vec3v_dot(e->third, f) * inverse_stretch.z;
-    return (vec3v){vec_fma(c1, e->first.x, vec_fma(c2, e->second.x, c3 * e->third.x)),
-                   vec_fma(c1, e->first.y, vec_fma(c2, e->second.y, c3 * e->third.y)),
-                   vec_fma(c1, e->first.z, vec_fma(c2, e->second.z, c3 * e->third.z))};
+/* A in the axes n_i of the stress: I + Σ α (R a)(R a)ᵀ, R a = Σ (n_i · F a)/s_i n_i. */
+SIMD_INLINE void add_structure(const tile_work *w, int32_t pack, int part, int field, real alpha, mat3v F, const eigen3v *e, vec3v inverse_stretch, sym3v *A) {
+    if (alpha == 0 || field < 0) return;
+    vec3v f = mat3v_times(F, vec3v_load(&w->state->fields[field], pack, part));
+    vec x = vec3v_dot(e->first, f) * inverse_stretch.x, y = vec3v_dot(e->second, f) * inverse_stretch.y, z = vec3v_dot(e->third, f) * inverse_stretch.z;
+    vec alpha_x = alpha * x, alpha_y = alpha * y, alpha_z = alpha * z;
+    *A = (sym3v){vec_fma(alpha_x, x, A->xx), vec_fma(alpha_y, y, A->yy), vec_fma(alpha_z, z, A->zz),
+                 vec_fma(alpha_x, y, A->xy), vec_fma(alpha_y, z, A->yz), vec_fma(alpha_x, z, A->xz)};
 }
 
-/* Squared length of A's action on one family, subtracted from tr(A S A S) step by step would need the general product; it is
- * cheaper to form A explicitly: six components. */
-SIMD_INLINE void add_structure(sym3v *A, vec3v f, real alpha) {
-    A->xx = vec_fma(alpha * f.x, f.x, A->xx);
-    A->yy = vec_fma(alpha * f.y, f.y, A->yy);
-    A->zz = vec_fma(alpha * f.z, f.z, A->zz);
-    A->xy = vec_fma(alpha * f.x, f.y, A->xy);
-    A->yz = vec_fma(alpha * f.y, f.z, A->yz);
-    A->xz = vec_fma(alpha * f.x, f.z, A->xz);
-}
-
-/* A applied to n. */
-SIMD_INLINE vec3v sym3v_times(sym3v A, vec3v n) {
-    return (vec3v){vec_fma(A.xx, n.x, vec_fma(A.xy, n.y, A.xz * n.z)), vec_fma(A.xy, n.x, vec_fma(A.yy, n.y, A.yz * n.z)),
-                   vec_fma(A.xz, n.x, vec_fma(A.yz, n.y, A.zz * n.z))};
-}
-
-/* tr(A S A S) with S = Σ s_i n_i n_iᵀ is Σ_ij s_i s_j (n_i · A n_j)²: no cancellation, never negative. */
-SIMD_INLINE vec driving_form(sym3v A, const eigen3v *e, vec3v s) {
-    vec3v a1 = sym3v_times(A, e->first), a2 = sym3v_times(A, e->second), a3 = sym3v_times(A, e->third);
-    vec m11 = vec3v_dot(e->first, a1), m22 = vec3v_dot(e->second, a2), m33 = vec3v_dot(e->third, a3);
-    vec m12 = vec3v_dot(e->first, a2), m23 = vec3v_dot(e->second, a3), m13 = vec3v_dot(e->first, a3);
-    vec mixed = vec_fma(s.x * s.y, m12 * m12, vec_fma(s.y * s.z, m23 * m23, s.x * s.z * m13 * m13));
-    vec pure = vec_fma(s.x * s.x, m11 * m11, vec_fma(s.y * s.y, m22 * m22, s.z * s.z * m33 * m33));
-    return pure + mixed + mixed;
+/* tr(A S A S) = Σ_ij s_i s_j A_ij² in the axes of S: no cancellation, never negative. */
+SIMD_INLINE vec driving_form(sym3v A, vec3v s) {
+    vec mixed = vec_fma(s.x * s.y, A.xy * A.xy, vec_fma(s.y * s.z, A.yz * A.yz, s.x * s.z * (A.xz * A.xz)));
+    vec x = s.x * A.xx, y = s.y * A.yy, z = s.z * A.zz;
+    return vec_fma(x, x, vec_fma(y, y, vec_fma(z, z, mixed + mixed)));
 }
 
 /* Principal values of τ from the eigenvalues of b, and |τ|² or a bound of it without them, of each elastic model. */
@@ -142,16 +123,10 @@ SIMD_INLINE vec driving_stress(const tile_work *w, int32_t pack, int part, mat3v
     if (c[ALPHA1] != 0 || c[ALPHA2] != 0) {
         vec3v inverse = {1 / vec_sqrt(vec_max(e.value.x, tiny)), 1 / vec_sqrt(vec_max(e.value.y, tiny)),
                          1 / vec_sqrt(vec_max(e.value.z, tiny))};
-        if (c[ALPHA1] != 0 && w->state->fibre_field >= 0) {
-            vec3v f = mat3v_times(F, vec3v_load(&w->state->fields[w->state->fibre_field], pack, part));
-            add_structure(&A, rotated_fibre(&e, inverse, f), c[ALPHA1]);
-        }
-        if (c[ALPHA2] != 0 && w->state->fibre2_field >= 0) {
-            vec3v f = mat3v_times(F, vec3v_load(&w->state->fields[w->state->fibre2_field], pack, part));
-            add_structure(&A, rotated_fibre(&e, inverse, f), c[ALPHA2]);
-        }
+        add_structure(w, pack, part, w->state->fibre_field, c[ALPHA1], F, &e, inverse, &A);
+        add_structure(w, pack, part, w->state->fibre2_field, c[ALPHA2], F, &e, inverse, &A);
     }
-    return driving_form(A, &e, positive);
+    return driving_form(A, positive);
 }
 
 /* Stress over σc, squared, by what this particle's E and σc are to its material's. */

@@ -44,7 +44,7 @@ static void what_is_no_ledger_is_refused(void) {
           sql_is("other.db", "PRAGMA journal_mode", "delete"));
     ledger_close(open_ledger("future.db"));
     sql_do("future.db", "PRAGMA user_version = 99");
-    CHECK(try_open("future.db", &r) == STATUS_INPUT && strstr(r.found, "schema 99") && strstr(r.expected, "schema 2"));
+    CHECK(try_open("future.db", &r) == STATUS_INPUT && strstr(r.found, "schema 99") && strstr(r.expected, "schema 3"));
     CHECK(sql_is("future.db", "PRAGMA user_version", "99"));
     CHECK(try_open("", &r) == STATUS_INPUT && strstr(r.found, "folder"));
     CHECK(try_open("garbage.db/ledger.db", &r) != STATUS_OK);

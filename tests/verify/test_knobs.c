@@ -53,7 +53,7 @@ static scene *explicit_damage(void) {
     test_set(s, "damage", "break_stretch", 0.02);
     test_set(s, "damage", "alpha", -0.6);
     test_set(s, "damage", "alpha2", -0.3);
-    test_set(s, "damage", "eta", 0.02);
+    test_set(s, "damage", "eta", 0.2);
     for (int g = 0; g < s->grip_count; g++) s->grips[g].stop = (BEFORE + 0.3) / s->fps; /* let go: what drives damage falls again */
     return s;
 }
@@ -462,7 +462,7 @@ static void knobs_are_found_by_the_words_of_set(void) {
     listed *l = list_knobs(explicit_damage);
     const knob *eta = named(l, "block.damage.eta");
     CHECK(eta && eta == named(l, "eta") && eta == named(l, "damage.eta") && eta == named(l, "block.eta"));
-    CHECK(eta && eta->live && eta->logarithmic && eta->value[0] == 0.02 && eta->start[0] == 0.02 && eta->fallback[0] == 0.1 && eta->material == 0);
+    CHECK(eta && eta->live && eta->logarithmic && eta->value[0] == 0.2 && eta->start[0] == 0.2 && eta->fallback[0] == 0.1 && eta->material == 0);
     CHECK(named(l, "gravity") && strcmp(named(l, "gravity")->path, "gravity.acceleration") == 0 && named(l, "gravity")->components == 3);
     CHECK(!named(l, "bock.damage.etta") && strcmp(l->r.nearest, "block.damage.eta") == 0);
     CHECK(!named(l, "damage.etta") && l->r.code == STATUS_INPUT);

@@ -270,8 +270,14 @@ static int open_protected(lua_State *L) {
 static status take_error(console *c, int outcome, report *r) {
     status s = error_take(c->script, outcome, r);
     if (atomic_load(&c->interrupted)) return report_set(r, STATUS_INPUT, "stopped");
-    if (s == STATUS_OK) s = STATUS_INPUT;
-    return s;
+    if (strcmp(r->expected, "Lua that runs") == 0) {
+        /* An error as Lua words it: of a line just typed neither its name nor its number is news. */
+        static const char own[] = "console:1: ";
+        char text[sizeof r->found];
+        snprintf(text, sizeof text, "%s", r->found + (strncmp(r->found, own, sizeof own - 1) == 0 ? sizeof own - 1 : 0));
+        return report_set(r, STATUS_INPUT, "%s", text);
+    }
+    return s == STATUS_OK ? STATUS_INPUT : s;
 }
 
 static status protected_call(console *c, lua_CFunction function, void *argument, report *r) {

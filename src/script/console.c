@@ -217,9 +217,13 @@ static bool is_plain_table(lua_State *L, int index) {
 }
 
 static void show(lua_State *L, int index, int depth) {
-    char number[40];
+    char number[40], described[160];
     index = lua_absindex(L, index);
-    if (depth < SHOWN_DEPTH && is_plain_table(L, index)) {
+    const shape_value *form = luaL_testudata(L, index, META_SHAPE);
+    if (form && form->shape) {
+        shape_describe(form->shape, described, sizeof described);
+        add(L, described);
+    } else if (depth < SHOWN_DEPTH && is_plain_table(L, index)) {
         show_table(L, index, depth);
     } else if (lua_type(L, index) == LUA_TNUMBER && !lua_isinteger(L, index)) {
         snprintf(number, sizeof number, "%.10g", lua_tonumber(L, index));

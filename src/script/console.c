@@ -217,9 +217,13 @@ static bool is_plain_table(lua_State *L, int index) {
 }
 
 static void show(lua_State *L, int index, int depth) {
-    char number[40];
+    char number[40], described[160];
     index = lua_absindex(L, index);
-    if (depth < SHOWN_DEPTH && is_plain_table(L, index)) {
+    const shape_value *form = luaL_testudata(L, index, META_SHAPE);
+    if (form && form->shape) {
+        shape_describe(form->shape, described, sizeof described);
+        add(L, described);
+    } else if (depth < SHOWN_DEPTH && is_plain_table(L, index)) {
         show_table(L, index, depth);
     } else if (lua_type(L, index) == LUA_TNUMBER && !lua_isinteger(L, index)) {
         snprintf(number, sizeof number, "%.10g", lua_tonumber(L, index));
@@ -270,8 +274,14 @@ static int open_protected(lua_State *L) {
 static status take_error(console *c, int outcome, report *r) {
     status s = error_take(c->script, outcome, r);
     if (atomic_load(&c->interrupted)) return report_set(r, STATUS_INPUT, "stopped");
-    if (s == STATUS_OK) s = STATUS_INPUT;
-    return s;
+    if (strcmp(r->expected, "Lua that runs") == 0) {
+        /* An error as Lua words it: of a line just typed neither its name nor its number is news. */
+        static const char own[] = "console:1: ";
+        char text[sizeof r->found];
+        snprintf(text, sizeof text, "%s", r->found + (strncmp(r->found, own, sizeof own - 1) == 0 ? sizeof own - 1 : 0));
+        return report_set(r, STATUS_INPUT, "%s", text);
+    }
+    return s == STATUS_OK ? STATUS_INPUT : s;
 }
 
 static status protected_call(console *c, lua_CFunction function, void *argument, report *r) {

@@ -53,6 +53,7 @@ static void bind_key(tui_app *app, const user_config *c, const user_binding *b, 
         return;
     }
     to->key = key;
+    snprintf(to->shown, sizeof to->shown, "%s", b->key);
     snprintf(to->name, sizeof to->name, "%s", name);
     snprintf(to->argument, sizeof to->argument, "%s", b->action + length + (b->action[length] == ' '));
     shell->binding_count++;

@@ -252,7 +252,12 @@ static status list_actions(json_writer *w) {
 
 status console_do(tui_app *app, const char *function, const char *const *arguments, int count, json_writer *reply, report *r) {
     const char *first = count > 0 ? arguments[0] : "", *second = count > 1 ? arguments[1] : "";
-    if (strcmp(function, "start") == 0) return app_do(app, "start", first, r);
+    if (strcmp(function, "start") == 0) {
+        const tui_screen *here = app->screen;
+        status s = app_do(app, "start", first, r);
+        app_show(app, here);
+        return s;
+    }
     if (strcmp(function, "act") == 0) return app_do(app, first, second, r);
     if (strcmp(function, "actions") == 0) return list_actions(reply);
     return do_on_run(app, function, first, second, reply, r);

@@ -29,10 +29,17 @@ static int help_lines(const tui_app *app, int line, tui_area area, int row) {
         if (beyond >= 0) snprintf(name, sizeof name, "%s", a->name);
         else snprintf(name, sizeof name, "%s.%s", s->name, a->name);
         if (area.width >= 70) draw_right(&app->theme, area, row, area.width - 1, STYLE_DIM, name);
-    } else if (row >= 0) {
+    } else if (row >= 0 && beyond < count) {
         draw_heading(&app->theme, area, row, "on every screen", NULL);
+    } else if (row >= 0 && beyond == count) {
+        draw_heading(&app->theme, area, row, "your own, from config.lua", NULL);
+    } else if (row >= 0) {
+        const tui_binding *own = &app->shell->bindings[beyond - count - 1];
+        draw_text(&app->theme, area, row, 1, STYLE_STRONG, own->shown);
+        draw_format(&app->theme, area, row, 11, STYLE_TEXT, "%s %s", own->name[0] ? own->name : "nothing", own->argument);
     }
-    return s->action_count + 1 + count;
+    int own = app->shell->binding_count;
+    return s->action_count + 1 + count + (own > 0 ? own + 1 : 0);
 }
 
 static void draw_help(tui_app *app, tui_area area) {

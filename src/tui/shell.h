@@ -108,6 +108,7 @@ void replay_tick(tui_app *app);
 
 typedef struct tui_binding {
     int key;
+    char shown[32]; /* the key as the user wrote it */
     char name[SHELL_NAME], argument[USER_TEXT]; /* name "": the key does nothing */
 } tui_binding;
 

@@ -87,7 +87,7 @@ def workbench(o, base, folder, environment):
         if delay is None:
             break
         delays.append(delay)
-        used = max(used, screen_seconds(terminal.pid) / (time.monotonic() - started))
+        used = screen_seconds(terminal.pid) / (time.monotonic() - started)
         for key in (b"?", b""):
             os.write(terminal.descriptor, key)
             end = time.monotonic() + 1.5

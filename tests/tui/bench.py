@@ -30,7 +30,7 @@ def covers(*names, **options):
     def register(function):
         case = Case(names, function, options)
         for name in names:
-            CASES[name] = case
+            CASES.setdefault(name, []).append(case)
         return function
     return register
 

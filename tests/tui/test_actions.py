@@ -60,7 +60,7 @@ def main():
         if name not in cases:
             print(f"FAIL {name}: no case presses it")
             failures += 1
-    chosen = list({id(cases[name]): cases[name] for name in wanted if name in cases}.values())
+    chosen = list({id(case): case for name in wanted for case in cases.get(name, [])}.values())
     with concurrent.futures.ThreadPoolExecutor(int(os.environ.get("SUNDER_JOBS", "2"))) as pool:
         for case, problem in zip(chosen, pool.map(run, chosen)):
             label = " ".join(case.names)

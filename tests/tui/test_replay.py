@@ -191,6 +191,9 @@ def config_binds_keys_and_wrong_ones_are_told():
         s.wait(r"eta = 0\.125 from")
         s.keys("g")
         s.wait(r"printed by libraries", absent=True)
+        s.keys("?", *["NPage"] * 12)
+        s.shows(r"your own", r"ctrl-n +run\.turn eta=0\.125", r" g +nothing")
+        s.keys("?")
         s.keys("F9")
         s.wait(r"\[Console\]")
     for wrong, message in (('return {\n  keys = {\n    F9 = "run.pausse" },\n}\n', r"(?s)config\.lua:3: .*run\.pause"),

@@ -71,6 +71,8 @@ static void test_expressions_and_statements(void) {
     CHECK(says(c, "for i = 1, 3 do print(i) end", "1\n2\n3\n"));
     CHECK(says(c, "{b = 2, a = {1, 2}}", "{a = {1, 2}, b = 2}"));
     CHECK(says(c, "nil", "nil"));
+    CHECK(says(c, "sunder.box { size = { 1, 2, 3 } } ~= nil", "true"));
+    CHECK(says(c, "sunder.sphere { radius = 2 }", "sphere r=2"));
     CHECK(fails(c, "y", "y"));
     CHECK(fails(c, "x x", "syntax"));
     CHECK(fails(c, "error('mine')", "mine"));

@@ -35,11 +35,31 @@ def run(s):
     s.wait(r"^ 7$")
     line(s, "turn('etaa', 1)")
     s.wait(r"did\s+you\s+mean")
+    line(s, "sunder.recipe('tube').damage.eta")
+    s.wait(r"^ 0\.\d+$")
+    line(s, "error('mine')")
+    s.wait(r"^ mine$")
     line(s, "os.execute('true')")
     s.wait(r"sandbox")
     line(s, "sunder.sphere")
     s.wait(r"function")
     check("run.turn" in s.commands(), "the turn is not in the command log")
+
+
+@covers("console.run", start=None)
+def starts(s):
+    s.wait(r"\[Scenes\]")
+    s.do("screen console")
+    s.wait(r"\[Console\]")
+    line(s, "knobs()")
+    s.wait(r"^ there is no run")
+    line(s, "start('tube_pull --set particles=900 --frames 9')")
+    s.wait(r"(running|done) *$")
+    line(s, "run_to(7); wait(); measures().frame")
+    s.wait(r"'wait'|near|syntax")  # statements are no expression: nothing has been run
+    line(s, "run_to(7); wait(); print('at', measures().frame)")
+    s.wait(r"^ at\S* *[79]$")
+    s.wait(r"\[Console\]")
 
 
 @covers("console.interrupt", "console.clear")

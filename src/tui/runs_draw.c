@@ -44,9 +44,17 @@ static tui_style style_of(const run_column *c, int row) {
 
 /* ---- columns ----------------------------------------------------------------------------------------------------- */
 
+/* A column's name as short as it can be said: "eta" for "tube.damage.eta" when no other ends so. */
+static const char *title_of(const runs_state *s, const run_column *c) {
+    const char *dot = strrchr(c->name, '.');
+    const run_column *meant;
+    report unused;
+    return dot && run_table_column(s->table, dot + 1, &meant, &unused) == STATUS_OK && meant == c ? dot + 1 : c->name;
+}
+
 /* What a column takes: its widest cell in view, or its title with the arrow of sorting. */
 static int column_width(const runs_state *s, const run_column *c, int rows) {
-    int width = draw_width(c->name) + 2;
+    int width = draw_width(title_of(s, c)) + 2;
     for (int i = s->top; i < s->top + rows && i < s->row_count; i++) {
         char text[RUNS_CELL];
         runs_format_cell(c, s->rows[i], text);
@@ -61,7 +69,7 @@ typedef struct shown_column {
     int at, width, index; /* index: in the state's columns */
 } shown_column;
 
-/* The columns that fit, from one on that leaves the cursor's in view; how many. */
+/* The columns that fit: the first, and those from one on that leaves the cursor's in view; how many. */
 static int lay_columns(runs_state *s, int rows, int width, shown_column out[RUNS_COLUMNS]) {
     int widths[RUNS_COLUMNS];
     const run_column *columns[RUNS_COLUMNS];
@@ -70,11 +78,10 @@ static int lay_columns(runs_state *s, int rows, int width, shown_column out[RUNS
         if (run_table_column(s->table, s->columns[i], &columns[i], &unused) != STATUS_OK) columns[i] = NULL;
         widths[i] = columns[i] ? column_width(s, columns[i], rows) : 1;
     }
-    int first = 0, taken = 0;
+    int first = 1, taken = 0, count = 0, at = 0;
     for (int i = 0; i <= s->column && i < s->column_count; i++) taken += widths[i] + GAP;
     while (first < s->column && taken > width) taken -= widths[first++] + GAP;
-    int count = 0, at = 0;
-    for (int i = first; i < s->column_count && at < width; i++) {
+    for (int i = 0; i < s->column_count && at < width; i = i == 0 ? first : i + 1) {
         int here = at + widths[i] <= width ? widths[i] : width - at;
         if (columns[i]) out[count++] = (shown_column){columns[i], at, here, i};
         at += widths[i] + GAP;
@@ -88,7 +95,7 @@ static void draw_titles(tui_app *app, const runs_state *s, tui_area line, const 
         bool sorted = strcmp(c->column->name, s->sort) == 0;
         const char *arrow = !sorted ? "" : app->theme.ascii ? (s->descending ? " v" : " ^") : s->descending ? " ▼" : " ▲";
         char text[RUNS_NAME + 8];
-        snprintf(text, sizeof text, "%s%s", c->column->name, arrow);
+        snprintf(text, sizeof text, "%s%s", title_of(s, c->column), arrow);
         tui_area cell = {line.y, line.x + MARK_WIDTH + c->at, 1, c->width};
         tui_style style = c->index == s->column ? STYLE_BAR_STRONG : STYLE_HEAD;
         if (c->index == s->column) draw_blank(&app->theme, cell, 0, style);

@@ -76,8 +76,9 @@ static void draw_cell(tui_app *app, const sweep_cell_result *cell, tui_area area
     tui_ink ink = valued ? cell_ink(app, fraction) : app->theme.styles[cell->state == CELL_FAILED ? STYLE_BAD : cell->state == CELL_GOING ? STYLE_STRONG : STYLE_DIM];
     if (valued) snprintf(text, sizeof text, "%.3g", cell->value);
     else snprintf(text, sizeof text, "%s", state_word(cell));
+    /* A space may be sent as an erasure, which not every terminal does in colour. */
     for (int row = 0; row < area.height; row++)
-        for (int column = 0; column < area.width; column++) draw_glyph(area, row, column, ink, ' ');
+        for (int column = 0; column < area.width; column++) draw_glyph(area, row, column, ink, app->theme.ascii ? ' ' : 0xa0);
     int width = draw_width(text), at = width < area.width ? (area.width - width) / 2 : 0;
     draw_ink(&app->theme, area, area.height / 2, at, ink, text);
     if (!here) return;

@@ -295,8 +295,10 @@ def test_sweep_list():
         open(box.path("little.lua"), "w").write(SWEEP % PULL)
         code, out, err = box.call("sweep", "little.lua", "--list")
         check(code == 0 and out.count("not started") == 4 and box.rows("SELECT count(*) FROM runs")[0][0] == 0, f"nothing is done: {out}{err}")
-        code, out, _ = box.call("sweep", "little.lua", "--verbose", "--threads", "1")
+        code, out, _ = box.call("sweep", "little.lua", "--verbose", "--threads", "1", "--set", "gamma=5")
         check(code == 0 and out.count("  started ") == 4 and out.count("/4  done ") == 4, f"starts are told: {out}")
+        code, out, err = box.call("sweep", "little.lua", "--threads", "1")
+        check(code == 0 and "  started " not in out and out.count("/4  done ") == 4, f"unless nobody asked: {code} {out}{err}")
         check(box.call("sweep", "little.lua", "--list")[1].count("  done before  ") == 4, "all is done")
 
 

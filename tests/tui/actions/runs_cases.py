@@ -46,7 +46,7 @@ def table_is_filtered_and_sorted(s):
     s.do("runs.columns eta damage_max")
     s.do("runs.sort eta")
     s.until("by eta", lambda: order(s) == ids)
-    s.wait(r"tube.damage.eta ▲")
+    s.wait(r" eta ▲")
     s.do("runs.sort -eta")
     s.until("the other way round", lambda: order(s) == ids[::-1])
     s.keys("/")
@@ -262,7 +262,7 @@ def a_sweep_fills_its_grid(s):
     s.wait(r"damage_max +of the last frame: break_stretch down, eta across")
     values = [row[0] for row in s.sql("SELECT value FROM final_measures AS m JOIN runs USING (run) WHERE m.name = 'damage_max' AND runs.frames_wanted = 1")]
     check(len(values) == 12, f"a measure of each run: {values}")
-    s.wait(rf" {values[0]:.3g}".replace(".", r"\."))
+    s.wait(rf"\s{values[0]:.3g}".replace(".", r"\."))
     s.keys("Right", "Down")
     s.wait(r"^9/12 \d{8}-.* damage_max = ")
     s.keys("n")

@@ -43,9 +43,6 @@ bool compare_range(const compare_state *state, int64_t *first, int64_t *last);
 /* Reads what is to be shown, if that has changed. */
 void compare_read(compare_state *state);
 
-/* Half the sum of |right − left| over the bins: the share of particles that would have to change their bin. */
-double compare_distance(const compare_state *state);
-
 void compare_draw(tui_app *app, void *state, tui_area area);
 
 #endif

@@ -93,14 +93,15 @@ static void draw_histograms(tui_app *app, const compare_state *state, tui_area a
         if (divisions[i] + 1 <= area.height) bins = divisions[i];
     }
     if (bins == 0) return;
-    double shares[COMPARE_SIDES][COMPARE_BINS], most = 0, most_difference = 0;
+    double shares[COMPARE_SIDES][COMPARE_BINS], most = 0, most_difference = 0, distance = 0;
     char note[96], percent[FORMAT_BYTES];
     for (int side = 0; side < COMPARE_SIDES; side++) view_rebin(state->sides[side].histogram, COMPARE_BINS, shares[side], bins);
     for (int i = 0; i < bins; i++) {
         most = fmax(most, fmax(shares[0][i], shares[1][i]));
         most_difference = fmax(most_difference, fabs(shares[1][i] - shares[0][i]));
+        distance += 0.5 * fabs(shares[1][i] - shares[0][i]); /* the share of particles that would have to change their bin */
     }
-    format_percent(compare_distance(state), percent);
+    format_percent(distance, percent);
     snprintf(note, sizeof note, "%s  %s differ", state->log_histogram ? "log" : "linear", percent);
     char name[64];
     snprintf(name, sizeof name, "particles by %s: A, B, B %s A", state->colour[0] ? state->colour : "colour", app->theme.ascii ? "-" : "−");

@@ -182,9 +182,3 @@ void compare_read(compare_state *state) {
     for (int i = 0; i < COMPARE_SIDES; i++) read_side(state, &state->sides[i]);
     follow(state);
 }
-
-double compare_distance(const compare_state *state) {
-    double sum = 0;
-    for (int i = 0; i < COMPARE_BINS; i++) sum += fabs(state->sides[1].histogram[i] - state->sides[0].histogram[i]);
-    return 0.5 * sum;
-}

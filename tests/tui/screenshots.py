@@ -42,7 +42,7 @@ def do(screen, text):
 
 
 def until(screen, frame):
-    screen.wait(r"frame +\d+/", "the run", patience=120)
+    screen.wait(r"(running|paused) *$", "the run", patience=120)
     do(screen, f"run.run-to {frame}")
     screen.wait(rf"frame +{frame}/", f"frame {frame}", patience=900)
     screen.wait(r"paused *$", patience=60)

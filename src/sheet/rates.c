@@ -14,7 +14,7 @@ enum { MEMORY = 16, BINS_AN_OCTAVE = 4, BINS = 512 };
 /* A longer step is worth its levels if it saves this share of the bond updates. */
 static const double WORTH = 0.02;
 
-/* θ acts where it takes or adds this share of a stiffness or a limit, or strains a bond by this. */
+/* θ acts where over a pack it changes a stiffness or a limit by this share, or strains its bonds unequally by this. */
 static const double ACTS = 0.05, SWELLS = 1e-3;
 
 /* ---- memory ------------------------------------------------------------------------------------------------------ */
@@ -211,10 +211,10 @@ static int halvings(double pace, double dt) {
     return level;
 }
 
-/* Whether θ swells or softens the bonds of a pack by something that shows. */
-static bool is_heated(const body_constants *b, double theta) {
+/* Whether θ swells or softens some bonds of a pack more than others: what is alike moves slowly. */
+static bool is_heated(const body_constants *b, double difference) {
     double loss = fmax((double)b->stiffness_loss, fmax((double)b->toughness_loss, (double)b->stretch_loss));
-    return loss * theta > ACTS || fabs((double)b->alpha) * theta > SWELLS;
+    return loss * difference > ACTS || fabs((double)b->alpha) * difference > SWELLS;
 }
 
 static bool has_cracked(const pack_rates *t, int32_t p) {
@@ -233,7 +233,7 @@ static int ask(const sheet *s, int32_t p, double dt, const double uniform[SHEET_
         for (int64_t k = t->near_start[p]; k < t->near_start[p + 1] && !cracks; k++) cracks = has_cracked(t, t->near[k]);
         more = cracks ? plan->cracking : 0;
     }
-    if (plan->heated > more && is_heated(&s->bodies[body], fmax(fabs((double)t->coldest[p]), fabs((double)t->hottest[p])))) more = plan->heated;
+    if (plan->heated > more && is_heated(&s->bodies[body], (double)t->hottest[p] - (double)t->coldest[p])) more = plan->heated;
     return level + more < SHEET_LEVELS ? level + more : SHEET_LEVELS - 1;
 }
 

@@ -64,7 +64,7 @@ def test_a_resumed_run_has_the_same_bits():
         database = os.path.join(folder.path, "ledger.db")
         whole, _ = folder.run("whole", "--frames", "6")
         part, _ = folder.run("part", "--frames", "3", "--checkpoint-every", "1")
-        sunder("run", "--resume", part, "--frames", "6", "--json", "--quiet", "--db", database)
+        sunder("run", "--resume", "last", "--frames", "6", "--json", "--quiet", "--db", database)
         for path in ("/solid/position", "/sheet/position", "/solid/velocity", "/sheet/bond_broken"):
             check(reader.read(whole, 6, path) == reader.read(part, 6, path), f"{path} after a resumed run")
         threads, _ = folder.run("threads", "--frames", "6", "--threads", "3")
@@ -83,7 +83,7 @@ def test_the_film_tears_and_the_bar_holds():
         check(os.path.getsize(picture) > 2000, "a picture of both")
         sunder("render", "last", "--db", os.path.join(folder.path, "ledger.db"), "--out", picture, "--colour", "sheet/broken")
         listed = sunder("runs", "list", "--db", os.path.join(folder.path, "ledger.db"))
-        check("bar_and_film" in listed, "the ledger lists the run")
+        check("Bar and film" in listed, "the ledger lists the run")
 
 
 def test_the_commands_say_that_there_are_both():

@@ -260,7 +260,7 @@ static void a_crack_runs_at_the_toughness_asked_for(void) {
         const char *name;
     } cases[] = {{SHEET_SQUARE, 1.5, "square, 8 neighbours"}, {SHEET_SQUARE, 3.015, "square, R = 3.015"}, {SHEET_HEXAGONAL, 1.5, "hexagonal, 6 neighbours"}, {SHEET_HEXAGONAL, 2.1, "hexagonal, 18 neighbours"},
                  {SHEET_SQUARE, 2.4, "square, R = 2.4"}, {SHEET_HEXAGONAL, 1.8, "hexagonal, R = 1.8"}};
-    enum { MEASURED = 4 }; /* the others lie between: one resolution, and what a table's reading between them can be off */
+    enum { MEASURED = 4 }; /* the others lie between: one resolution */
     bool measuring = getenv("SUNDER_TRAPPING") != NULL; /* prints what trapping.c holds */
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
         for (int rows = k < MEASURED ? 31 : 46; rows <= (k < MEASURED ? 61 : 46); rows += 15) {
@@ -268,7 +268,7 @@ static void a_crack_runs_at_the_toughness_asked_for(void) {
             double found = strip_toughness(cases[k].lattice, cases[k].radius, rows, !measuring);
             if (measuring) printf("  %s, %d rows: G / G asked = %.3f\n", cases[k].name, rows, found);
             snprintf(text, sizeof text, "clamped strip, %s, %d rows: G at which the crack runs / G", cases[k].name, rows);
-            CHECK_ROW("METHOD 6", text, 1, found, k < MEASURED ? 0.05 : 0.08);
+            CHECK_ROW("METHOD 6", text, 1, found, 0.05);
         }
 }
 

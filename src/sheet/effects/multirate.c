@@ -1,5 +1,5 @@
 /* Multi-rate: regions that are stiffer take smaller steps, 2^−l of the step; and, for their accuracy, regions where bonds break or where
- * what diffuses acts on bonds. A material without it takes one step throughout. The work is in rates.c. */
+ * what diffuses acts on some more than on others. A material without it takes one step throughout. The work is in rates.c. */
 #include "sheet/state.h"
 
 enum { KEY_LEVELS, KEY_CRACKING, KEY_HEATED };
@@ -15,7 +15,7 @@ static const parameter parameters[] = {
     [KEY_LEVELS] = {.key = "levels", .unit = "1", .doc = "how often a step may be halved where bonds are stiffer", .minimum = 0, .maximum = 5,
                     .fallback = {4}, .live = true, .short_form = "multirate = 4"},
     [KEY_CRACKING] = PARAMETER_PLAIN("cracking", "1", "how often it is halved again where bonds break", 0, 2, 1),
-    [KEY_HEATED] = PARAMETER_PLAIN("heated", "1", "how often it is halved again where the diffused quantity swells or softens bonds", 0, 2, 1),
+    [KEY_HEATED] = PARAMETER_PLAIN("heated", "1", "how often it is halved again where the diffused quantity swells or softens some bonds more than others", 0, 2, 1),
 };
 
 static const sheet_stages stages = {.declare = declare};

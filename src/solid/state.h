@@ -119,6 +119,7 @@ typedef struct fibre_constraint {
     real recovery[SOLID_MATERIALS]; /* rate at which stretch is taken back, 1/time */
     double tolerance;
     int solver; /* constraint_solver: what the last of the materials asks for */
+    bool warm;  /* solves start from the particles' tensions */
     int64_t solves, iterations, factorisations;
     struct sparse_solver *preconditioner; /* NULL: Jacobi's */
     bool refused;  /* no library is worth its work for now */

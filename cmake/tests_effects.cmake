@@ -2,6 +2,7 @@
 sunder_test(plasticity ${CMAKE_SOURCE_DIR}/tests/verify/test_plasticity.c sunder_solid)
 target_sources(test_plasticity PRIVATE ${CMAKE_SOURCE_DIR}/tests/verify/plasticity_f32.c)
 sunder_test(plastic_bar ${CMAKE_SOURCE_DIR}/tests/verify/test_plastic_bar.c sunder_sim)
+sunder_test(snapping ${CMAKE_SOURCE_DIR}/tests/verify/test_snapping.c sunder_sim)
 sunder_test(corotated ${CMAKE_SOURCE_DIR}/tests/verify/test_corotated.c sunder_solid)
 sunder_test(corotated_body ${CMAKE_SOURCE_DIR}/tests/verify/test_corotated_body.c sunder_sim)
 

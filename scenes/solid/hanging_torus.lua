@@ -5,11 +5,10 @@ local s = require "sunder"
 local p = s.params {
   particles = 5000, duration = 5, fps = 24,
   density = { 5, min = 0.01, max = 1e5, doc = "of the ring; the paper's run from 0.75 to 30" },
-  solver = s.choice { "auto", "jacobi", "direct", "amg" },
   variant = s.choice { "inextensible", "elastic" },
 }
 local rope = { density = 1, elastic = { E = 10, nu = 0.3 } }
-if p.variant == "inextensible" then rope.inextensible = { solver = p.solver } else rope.fibres = { gamma = 100 } end
+if p.variant == "inextensible" then rope.inextensible = {} else rope.fibres = { gamma = 100 } end
 
 local major, minor, thick, top = 0.30, 0.10, 0.045, 1.0
 local ropes

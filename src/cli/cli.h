@@ -49,6 +49,9 @@ int command_bench_sheet(const sheet_bench_matrix *q);
 /* command_bench_table1.c: `bench table1`, with its own options; arguments[0] is "table1". The exit code. */
 int command_bench_table1(int count, char **arguments);
 
+/* command_bench_constraint.c: `bench constraint`, likewise. */
+int command_bench_constraint(int count, char **arguments);
+
 /* Prints a report as one line on standard error, after "sunder: ", and returns its exit code. */
 int cli_fail(const report *r);
 

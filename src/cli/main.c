@@ -32,8 +32,9 @@ static const command commands[] = {
     {"bench", "bench step|sheet [--json] [--csv FILE] [--full] [--case NAME]… [--particles N] [--threads N] [--precision f32|f64] [--seconds S] [--repeat N]\n"
               "         sheet also: [--against lammps]\n"
               "         bench table1 [--paper solid|sheet|both] [--row NAME]… [--frames N] [--warm N] [--paper-dt] [--scale F] [--time-limit S] [--threads N]\n"
-              "                      [--precision f32|f64] [--scenes DIR] [--json]",
-     "measure how fast steps are, beside what the machine could do; table1: seconds a frame, beside the papers'", command_bench},
+              "                      [--precision f32|f64] [--scenes DIR] [--json]\n"
+              "         bench constraint [--scene lance|hanging_torus] [--particles N] [--frames N] [--warm N] [--threads N] [--scenes DIR] [--json]",
+     "measure how fast steps are, beside what the machine could do; table1: seconds a frame, beside the papers'; constraint: inextensible fibres' solvers", command_bench},
     {"help", "help [effects | actions] [--json]", "list the commands, all effects with their parameters, or all that the workbench can do", command_help},
 };
 

@@ -140,7 +140,7 @@ SIMD_INLINE void start_block(pass_context *c, int32_t index, int worker, kernel_
     memset(window, 0, STARTED * WINDOW_NODES * sizeof *window);
     FOR_EACH_PART(s, b, {
         fibre_lanes l = lanes_load(s, kernel, pack, part);
-        vec tension = vec_load(field_at(&s->fields[s->tension_field], pack, 0, part));
+        vec tension = s->constraint.warm ? vec_load(field_at(&s->fields[s->tension_field], pack, 0, part)) : vec_all(0);
         vec strain = vec_max(vec_min(l.stretch - 1, vec_all(CORRECTED_MOST)), vec_all(-CORRECTED_MOST));
         real relaxation = s->constraint.relaxation[t->material] / c->dt, most = CORRECTION / c->dt;
         real rate = s->constraint.recovery[t->material] < most ? s->constraint.recovery[t->material] : most;

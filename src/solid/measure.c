@@ -132,6 +132,7 @@ status solid_measure(const solid *s, solid_measures *m, report *r) {
     m->constraint_solves = s->constraint.solves;
     m->constraint_iterations = s->constraint.iterations;
     m->constraint_factorisations = s->constraint.factorisations;
+    m->constraint_seconds = s->solving[EFFECT_inextensible];
     m->grip_work = s->grip_work;
     memcpy(m->grip_impulse, s->grip_impulse, sizeof m->grip_impulse);
     return STATUS_OK;

@@ -64,6 +64,7 @@ typedef struct solid_measures {
     double determinant_min, determinant_max, speed_max;
     double stretch_min, stretch_max; /* |F a1| of the first fibre family; 1 where there is none */
     int64_t constraint_solves, constraint_iterations, constraint_factorisations; /* of inextensible fibres, since the start */
+    double constraint_seconds; /* in them, since the start; not part of the state */
 } solid_measures;
 
 typedef struct solid solid;

@@ -119,6 +119,7 @@ typedef struct fibre_constraint {
     real recovery[SOLID_MATERIALS]; /* rate at which stretch is taken back, 1/time */
     double tolerance;
     int solver; /* constraint_solver: what the last of the materials asks for */
+    bool warm;  /* solves start from the particles' tensions */
     int64_t solves, iterations, factorisations;
     struct sparse_solver *preconditioner; /* NULL: Jacobi's */
     bool refused;  /* no library is worth its work for now */
@@ -173,7 +174,7 @@ struct solid {
     int field_count;
     solid_field fields[FIELD_LIMIT];
     int density_scale, stiffness_scale, toughness_scale, viscosity_scale, gamma_scale; /* the same: parameters that vary in place */
-    int damage_field, history_field, fibre_field, fibre2_field, tension_field; /* indices, −1 when absent */
+    int damage_field, history_field, fibre_field, fibre2_field, tension_field, snapped_field; /* indices, −1 when absent */
 
     int32_t tile_count, tile_capacity, result_capacity, block_count, block_capacity, colour_capacity;
     solid_tile *tiles;

@@ -226,6 +226,15 @@ def test_table1_interrupted():
         check(os.listdir(folder) == [], f"left behind {os.listdir(folder)}")
 
 
+def test_constraint():
+    code, out, err = call("constraint", "--json", "--scene", "hanging_torus", "--particles", "300", "--warm", "0", "--scenes", SCENES)
+    check(code == 0, f"exit code {code}: {err}")
+    rows = json.loads(out)["rows"]
+    check({"auto", "jacobi"} <= {row["solver"] for row in rows} and {row["warm_start"] for row in rows} == {True, False}, f"every way: {rows}")
+    check(all(row["solves"] >= row["steps"] > 0 and row["iterations_per_solve"] > 0 for row in rows), f"each step solves: {rows}")
+    check(call("constraint", "--scene", "torus")[0] == 2, "a scene that is none of them")
+
+
 def test_table1_wrong_arguments():
     for arguments, expected in ((["--row", "tube_pul"], "did you mean tube_pull"), (["--paper", "solids"], "solid, sheet or both"),
                                 (["--scale", "0"], "a number"), (["--frames", "0"], "whole number"), (["tube_pull"], "--row"),

@@ -336,11 +336,21 @@ def test_heart():
         check(left["elastic"] < 0.01, f"elastic springs back: {left}")
 
 
+def rope_stretch(run, number):
+    """Mean stretch, less 1, along the upright fibres of the lance's ropes."""
+    body, F = frames.read(run, number, "body"), frames.read(run, number, "deformation_gradient")
+    stretches = [math.hypot(F[9 * i + 1], F[9 * i + 4], F[9 * i + 7]) - 1 for i, b in enumerate(body) if b == 1]
+    return sum(stretches) / len(stretches)
+
+
 def test_lance():
     with Box() as box:
-        wound, arms, reach = {}, {}, {}
+        wound, arms, reach, stretched = {}, {}, {}, {}
+        held = box.run("lance", 12, 10000, variant="inextensible")
+        stretched["inextensible"] = rope_stretch(held, 12)
         for variant in ("full", "isotropic"):
             run = box.run("lance", None, 10000, variant=variant)
+            stretched[variant] = rope_stretch(run, 12)
             points = frames.damaged(run)
             torso = [p for p, d in points if d > 0.9 and abs(p[0]) < 0.1 and -0.18 < p[1] < 0.2]
             skin = [p for p in torso if p[2] < -0.04 and abs(p[0]) < 0.08]
@@ -350,7 +360,10 @@ def test_lance():
             arms[variant] = sum(d > 0.9 for d in arm) / len(arm)
         print("  width and height of the wound:", {v: [round(a, 3) for a in w] for v, w in wound.items()}, " from, to:", reach,
               " broken of the arms:", {v: round(a, 2) for v, a in arms.items()})
+        print("  stretch of the ropes' fibres while the lance goes in:", {v: f"{e:.1e}" for v, e in stretched.items()})
         check(all(a < -0.08 and b > 0.08 for a, b in reach.values()), f"the lance goes through: {reach}")
+        check(abs(stretched["inextensible"]) < 2e-4 < 1e-3 < stretched["full"], f"inextensible ropes keep their length, stiff ones give: {stretched}")
+        check(held["damage"]["max"] > 0.9, f"and the lance breaks the toy: {held['damage']}")
         check(wound["full"][1] > 2 * wound["full"][0], f"along the fibres: a slit: {wound}")
         check(wound["isotropic"][0] > 1.3 * wound["full"][0], f"everywhere: a wider one: {wound}")
         check(arms["isotropic"] > 2.5 * arms["full"], f"and the arms tear off across their fibres: {arms}")

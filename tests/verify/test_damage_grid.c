@@ -1,8 +1,10 @@
 /* Damage on the grid (METHOD.md §2), f64.
  *
  * - Beside a band held at d = 1 a bar relaxes to exp(−|x|/l0), x from the band's edge: decay length fitted over 1.5–4 l0 within 2 % at
- *   l0 = 8 dx, mean error falling at first order in dx; explicit and implicit, quadratic and cubic. (The mean: within half a cell of the
- *   edge a particle shares its nodes with the band's, and sees what it sheds.)
+ *   l0 = 8 dx, mean error falling at first order in dx; explicit and implicit, quadratic and cubic. The largest error, which METHOD.md asks
+ *   for, does not: implicit, from l0 = 4 to 8 to 16 dx it is .50, .38, .30 (quadratic) and .61, .49, .37 (cubic), order 0.3 to 0.4, and beyond
+ *   a cell from the band .16, .12, .09. The profile has a kink at the band's edge, where d'' is −δ(x)/l0: at particles within a
+ *   kernel's reach Δd is of size −1/(l0 dx) whatever the kernel, and they cannot follow d = l0² Δd. It is printed, not asked for.
  * - The implicit operator is symmetric and positive definite.
  * - Explicit and implicit damage agree as Δt → 0, first-order slope: driven evenly, and each particle as it likes.
  * - A narrow band of driven particles breaks the same particles, explicitly and implicitly, in two steps or many.
@@ -22,7 +24,7 @@ static const shape *bar(arena *a) {
 
 /* Relaxes the band, as wide to each side as l0, and compares with the profile outside: fitted decay length over l0, and the mean
  * error. (A band narrower than a kernel is a peak on the nodes, concave around it, where d does not grow.) */
-static void relax_band(double cells, bool implicit, kernel_kind laplacian, double *decay, double *error) {
+static void relax_band(double cells, bool implicit, kernel_kind laplacian, double *decay, double *error, double largest[2]) {
     double l0 = 1, dx = l0 / cells;
     length_of_bar = 16;
     width_of_bar = 2 * dx;
@@ -48,10 +50,13 @@ static void relax_band(double cells, bool implicit, kernel_kind laplacian, doubl
     engine->read(state, "damage", d);
     double sx = 0, sy = 0, sxx = 0, sxy = 0, count = 0;
     double total = 0, seen = 0;
+    largest[0] = largest[1] = 0;
     for (int64_t i = 0; i < n; i++) {
         double away = fabs(x[3 * i]) - 1;
         if (away > 5 * l0 || away < 0) continue;
         total += fabs(d[i] - exp(-away / l0)), seen++;
+        largest[0] = fmax(largest[0], fabs(d[i] - exp(-away / l0)));
+        if (away > dx) largest[1] = fmax(largest[1], fabs(d[i] - exp(-away / l0)));
         if (away < 1.5 * l0 || away > 4 * l0) continue;
         sx += away, sy += log(d[i]), sxx += away * away, sxy += away * log(d[i]), count++;
     }
@@ -66,15 +71,17 @@ static void a_band_relaxes_to_its_exponential(void) {
     static const char *const names[2][2] = {{"explicit, quadratic", "explicit, cubic"}, {"implicit, quadratic", "implicit, cubic"}};
     for (int implicit = 0; implicit < 2; implicit++)
         for (int laplacian = 0; laplacian < 2; laplacian++) {
-            double decay, error, coarse_decay, coarse_error;
-            relax_band(4, implicit, (kernel_kind)laplacian, &coarse_decay, &coarse_error);
-            relax_band(8, implicit, (kernel_kind)laplacian, &decay, &error);
+            double decay, error, coarse_decay, coarse_error, coarse_largest[2], largest[2];
+            relax_band(4, implicit, (kernel_kind)laplacian, &coarse_decay, &coarse_error, coarse_largest);
+            relax_band(8, implicit, (kernel_kind)laplacian, &decay, &error, largest);
             printf("  %s: decay %.4f, %.4f l0; mean error %.4f, %.4f (order %.2f)\n", names[implicit][laplacian], coarse_decay, decay,
                    coarse_error, error, log2(coarse_error / error));
+            printf("    largest error %.4f, %.4f (order %.2f); further than a cell from the band %.4f, %.4f (order %.2f)\n", coarse_largest[0],
+                   largest[0], log2(coarse_largest[0] / largest[0]), coarse_largest[1], largest[1], log2(coarse_largest[1] / largest[1]));
             char text[128];
             snprintf(text, sizeof text, "band held at d = 1: decay length over l0 at l0 = 8 dx, %s", names[implicit][laplacian]);
             CHECK_ROW("METHOD 2", text, 1, decay, 0.02);
-            snprintf(text, sizeof text, "the same: order of the mean error in dx, %s", names[implicit][laplacian]);
+            snprintf(text, sizeof text, "the same: order of the mean error in dx (the largest, at the edge: 0.3 to 0.5), %s", names[implicit][laplacian]);
             CHECK_ROW("METHOD 2", text, 1, log2(coarse_error / error), 0.35);
         }
 }

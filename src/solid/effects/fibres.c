@@ -1,7 +1,7 @@
 /* Fibres: one or two families that stiffen the matrix along their directions.
  *
  * Ψf = Σ_k k_k/2 (ℓ_k − 1)², ℓ_k = |F a_k|, k_k = γ_k μ  (AnisoMPM §5, METHOD.md §1). τ = Σ k_k (1 − 1/ℓ_k) (F a_k)(F a_k)ᵀ.
- * Never degraded by the matrix' damage: fibres part, they do not tear. */
+ * Never degraded by the matrix' damage: fibres part, they do not tear; what breaks them is snapping.c. */
 #include "solid/moduli.h"
 #include "solid/tensor.h"
 
@@ -17,9 +17,13 @@ static void constants(const effect_values *all, const solid_definition *d, bool 
     out[K2] = (real)(mu * all[EFFECT_fibres].value[KEY_GAMMA2][0]);
 }
 
-/* γ's own scale, and that of μ. */
-SIMD_INLINE vec stiffened(const tile_work *w, int32_t pack, int part, vec value) {
-    return scaled(w->state, w->state->gamma_scale, pack, part, scaled(w->state, w->state->stiffness_scale, pack, part, value));
+/* γ's own scale, and that of μ; and (1 − d_f)² where fibres of the first family snap. */
+SIMD_INLINE vec stiffened(const tile_work *w, int field, int32_t pack, int part, vec value) {
+    const solid *s = w->state;
+    vec whole = scaled(s, s->gamma_scale, pack, part, scaled(s, s->stiffness_scale, pack, part, value));
+    if (s->snapped_field <= 0 || field != s->fibre_field) return whole;
+    vec left = 1 - vec_load(field_at(&s->fields[s->snapped_field], pack, 0, part));
+    return whole * left * left;
 }
 
 /* Adds one family's Kirchhoff stress. As ℓ → 0 the direction F a is lost and with it the (finite) force: the limit
@@ -32,7 +36,7 @@ static void add_family(tile_work *w, int field, real stiffness) {
             vec3v f = mat3v_times(mat3v_load(&w->state->fields[FIELD_DEFORMATION], pack, part),
                                   vec3v_load(&w->state->fields[field], pack, part));
             vec length = vec_max(vec_sqrt(vec3v_dot(f, f)), vec_all(LENGTH_TINY));
-            vec factor = stiffened(w, pack, part, stiffness * (1 - 1 / length));
+            vec factor = stiffened(w, field, pack, part, stiffness * (1 - 1 / length));
             vec3v g = {factor * f.x, factor * f.y, factor * f.z};
             vec products[6] = {g.x * f.x, g.y * f.y, g.z * f.z, g.x * f.y, g.y * f.z, g.x * f.z};
             for (int c = 0; c < 6; c++) {
@@ -91,7 +95,7 @@ static void add_wave(tile_work *w, int field, real stiffness) {
             vec3v f = mat3v_times(mat3v_load(&w->state->fields[FIELD_DEFORMATION], pack, part),
                                   vec3v_load(&w->state->fields[field], pack, part));
             real *modulus = scratch_at(w->scratch->wave_modulus, 1, k, 0, part);
-            vec_store(modulus, vec_load(modulus) + stiffened(w, pack, part, stiffness * vec3v_dot(f, f)));
+            vec_store(modulus, vec_load(modulus) + stiffened(w, field, pack, part, stiffness * vec3v_dot(f, f)));
         }
 }
 
@@ -112,6 +116,10 @@ static void add_energy(tile_work *w, int field, double stiffness) {
                           (double)field_at(&w->state->fields[field], pack, c, 0)[lane];
         double stretch = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) - 1;
         double here = stiffness * scale_of(w->state, w->state->stiffness_scale, pack, lane) * scale_of(w->state, w->state->gamma_scale, pack, lane);
+        if (w->state->snapped_field > 0 && field == w->state->fibre_field) {
+            double left = 1 - (double)field_at(&w->state->fields[w->state->snapped_field], pack, 0, 0)[lane];
+            here *= left * left;
+        }
         w->energy[1] += 0.5 * here * stretch * stretch *
                         (double)field_at(&w->state->fields[FIELD_VOLUME], pack, 0, 0)[lane];
     }

@@ -10,7 +10,7 @@
  * more than 0.1 %. */
 static const double HASTE = 20;
 
-enum { KEY_RELAXATION, KEY_TOLERANCE, KEY_SOLVER, KEY_COUNT };
+enum { KEY_RELAXATION, KEY_TOLERANCE, KEY_SOLVER, KEY_WARM_START, KEY_COUNT };
 
 static void declare(solid *s, int material, const effect_values *all) {
     const effect_values *own = &all[EFFECT_inextensible];
@@ -21,6 +21,7 @@ static void declare(solid *s, int material, const effect_values *all) {
     solid_elastic_moduli(all, &mu, &lambda, &lame_lambda);
     s->constraint.recovery[material] = (real)(HASTE * sqrt((lambda + 2 * mu) / s->definition.materials[material].density) / s->definition.dx);
     s->constraint.solver = (int)own->value[KEY_SOLVER][0];
+    s->constraint.warm = own->value[KEY_WARM_START][0] != 0;
     if (own->value[KEY_TOLERANCE][0] < s->constraint.tolerance) s->constraint.tolerance = own->value[KEY_TOLERANCE][0];
 }
 
@@ -44,6 +45,8 @@ static const parameter parameters[] = {
                        .maximum = 0.5, .fallback = {1e-4}, .live = true, .logarithmic = true},
     [KEY_SOLVER] = {.key = "solver", .unit = "1", .doc = "preconditioner of the conjugate gradients; auto: jacobi, and a better one when that is slow",
                     .kind = PARAMETER_CHOICE, .maximum = 3, .choices = solver_choices, .live = true},
+    [KEY_WARM_START] = {.key = "warm_start", .unit = "1", .doc = "whether a solve starts from the last step's tension, or from none",
+                        .kind = PARAMETER_BOOLEAN, .maximum = 1, .fallback = {1}, .live = true},
 };
 
 static const effect_field fields[] = {

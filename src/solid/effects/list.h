@@ -9,6 +9,7 @@
     X(elastic)                                                                                                         \
     X(corotated) /* or this: a material has one elastic model */                                                       \
     X(fibres)                                                                                                          \
+    X(snapping) /* of fibres */                                                                                        \
     X(gravity)                                                                                                         \
     X(mass_damping)                                                                                                    \
     X(boundary) /* grips and colliders on the grid's velocities */                                                     \

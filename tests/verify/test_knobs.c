@@ -62,6 +62,13 @@ static scene *explicit_damage(void) {
     return s;
 }
 
+/* Its damage, not its waves, limits the step: a limit that the last step left behind, and a turn changes. */
+static scene *brittle_damage(void) {
+    scene *s = explicit_damage();
+    test_set(s, "damage", "eta", 0.004);
+    return s;
+}
+
 static scene *implicit_damage(void) {
     scene *s = solid_scene("elastic", 1);
     test_set(s, "fibres", "gamma", 5);
@@ -360,6 +367,10 @@ static void turns_act_in_solids_that_crack(void) {
     turn_all(explicit_damage);
 }
 
+static void turns_act_where_damage_limits_the_step(void) {
+    turn_all(brittle_damage);
+}
+
 static void turns_act_in_implicit_damage(void) {
     turn_all(implicit_damage);
 }
@@ -563,6 +574,7 @@ int main(void) {
     RUN(turns_resolve_what_follows_from_them);
     RUN(wrong_turns_leave_everything_as_it_was);
     RUN(turns_act_in_solids_that_crack);
+    RUN(turns_act_where_damage_limits_the_step);
     RUN(turns_act_in_implicit_damage);
     RUN(turns_act_in_plastic_bodies_with_a_phase_field);
     RUN(turns_act_on_inextensible_fibres);

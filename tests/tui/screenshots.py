@@ -190,7 +190,8 @@ def take(sunder, name, out, library):
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as own:
         home = library if chosen.library else own
         variables = f"export XDG_DATA_HOME={home} XDG_CONFIG_HOME={home};{f' cd {home};' if chosen.library else ''}"
-        with Screen(f"{chosen.start} --db {home}/ledger.db", width=chosen.width, height=chosen.height, variables=variables) as screen:
+        with Screen(f"{chosen.start} --db {home}/ledger.db", width=chosen.width, height=chosen.height, variables=variables,
+                    term="screen-256color") as screen:  # without bce: tmux does not capture cells that were erased in a colour
             if chosen.library:
                 screen.wait(r"\[Scenes\]")
             chosen.function(screen)

@@ -78,6 +78,14 @@ static scene *implicit_damage(void) {
     return s;
 }
 
+static scene *snapping_fibres(void) {
+    scene *s = solid_scene("elastic", 1);
+    test_set(s, "fibres", "gamma", 5);
+    test_set(s, "snapping", "snap_strain", 0.01);
+    test_set(s, "snapping", "snap_time", 0.1);
+    return s;
+}
+
 static scene *plastic_phase_field(void) {
     scene *s = solid_scene("corotated", 0);
     test_set(s, "plastic", "yield_stress", 30);
@@ -375,6 +383,10 @@ static void turns_act_in_implicit_damage(void) {
     turn_all(implicit_damage);
 }
 
+static void turns_act_on_fibres_that_snap(void) {
+    turn_all(snapping_fibres);
+}
+
 static void turns_act_in_plastic_bodies_with_a_phase_field(void) {
     turn_all(plastic_phase_field);
 }
@@ -576,6 +588,7 @@ int main(void) {
     RUN(turns_act_in_solids_that_crack);
     RUN(turns_act_where_damage_limits_the_step);
     RUN(turns_act_in_implicit_damage);
+    RUN(turns_act_on_fibres_that_snap);
     RUN(turns_act_in_plastic_bodies_with_a_phase_field);
     RUN(turns_act_on_inextensible_fibres);
     RUN(turns_act_on_tetrahedra);

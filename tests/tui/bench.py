@@ -108,6 +108,8 @@ class Bench:
 
     def commands(self):
         """The command log of the newest run."""
-        folder = self.sql("SELECT output FROM runs ORDER BY run DESC LIMIT 1")[0][0]
-        with open(os.path.join(folder, "commands.log"), encoding="utf-8") as file:
+        path = os.path.join(self.sql("SELECT output FROM runs ORDER BY run DESC LIMIT 1")[0][0], "commands.log")
+        # The run is in the ledger a moment before the workbench has taken it up.
+        self.until("the run's command log", lambda: os.path.exists(path))
+        with open(path, encoding="utf-8") as file:
             return file.read()

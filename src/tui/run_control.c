@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 status run_pause(tui_app *app, const char *argument, report *r) {
     status s = run_needed(app, r);
@@ -202,12 +203,25 @@ static const knob *material_at(const run_state *state, int index) {
     return NULL;
 }
 
+/* Recipes are found by name in a folder of that name. */
+static const char *recipe_file(void) {
+    struct stat about;
+    return stat("recipes", &about) == 0 && S_ISDIR(about.st_mode) ? "recipes/tuned.lua" : "tuned.lua";
+}
+
+static void tell_recipe(tui_app *app, const char *material, const char *path) {
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    int length = (int)strcspn(name, ".");
+    if (strncmp(path, "recipes/", 8) == 0) app_notice(app, "%s is in %s; --recipe %.*s takes it.", material, path, length, name);
+    else app_notice(app, "%s is in %s; from a folder recipes/, --recipe %.*s takes it.", material, path, length, name);
+}
+
 bool run_complete_material(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
     const run_state *state = run_state_of(app);
     const knob *k;
     for (int i = 0; (k = material_at(state, i)) != NULL; i++) {
         if (strncmp(k->owner, text, strlen(text)) != 0 || index-- > 0) continue;
-        snprintf(out, ACTION_ARGUMENT, "%s tuned.lua", k->owner);
+        snprintf(out, ACTION_ARGUMENT, "%s %s", k->owner, recipe_file());
         return true;
     }
     return false;
@@ -223,7 +237,7 @@ status run_save_recipe(tui_app *app, const char *argument, report *r) {
     if (!material) return report_set(r, STATUS_INPUT, "This run has no material.");
     if (!argument[0]) {
         char line[128];
-        snprintf(line, sizeof line, "%s tuned.lua", material->owner);
+        snprintf(line, sizeof line, "%s %s", material->owner, recipe_file());
         app_prompt(app, "run.save-recipe", line);
         app_log_nothing(app);
         return STATUS_OK;
@@ -238,6 +252,6 @@ status run_save_recipe(tui_app *app, const char *argument, report *r) {
     s = session_save_recipe(app->run, material->material, path, r);
     if (s != STATUS_OK) return s;
     app_log_argument(app, "%s %s", material->owner, path);
-    app_notice(app, "%s is in %s; a scene takes it with --recipe.", material->owner, path);
+    tell_recipe(app, material->owner, path);
     return STATUS_OK;
 }

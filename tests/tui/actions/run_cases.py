@@ -162,6 +162,12 @@ def recipe(s):
     s.wait(r"is in tuned\.lua")
     with open(os.path.join(s.folder, "tuned.lua"), encoding="utf-8") as file:
         check("0.375" in file.read(), "the recipe has not the tuned value")
+    os.mkdir(os.path.join(s.folder, "recipes"))
+    s.keys("w")
+    s.wait(r"^:run\.save-recipe \S+ recipes/tuned\.lua")
+    s.keys("Enter")
+    s.wait(r"--recipe tuned takes it")
+    os.remove(os.path.join(s.folder, "recipes", "tuned.lua"))
     with open(os.path.join(s.folder, "mine.lua"), "w", encoding="utf-8") as file:
         file.write('local s = require "sunder"\nreturn s.scene { title = "Mine", solids = { { shape = s.box { size = { 1, 1, 1 } }, '
                    'material = s.recipe("tuned"), particles = 100 } } }\n')

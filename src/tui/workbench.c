@@ -16,7 +16,7 @@
 
 static const double frame_time = 1.0 / 30; /* s; at most 30 redraws a second, and as many looks at the session */
 static const double key_delay = 0.02;      /* s; the longest that a key's effect may wait for its redraw */
-static const double load_share = 0.1;      /* of a core that drawing may take from the simulation */
+static const double load_share = 0.03;    /* of a core that drawing may take from the simulation: a step waits for its slowest thread */
 static const double replay_time = 0.002;   /* s between two looks while a log is done again */
 enum { KEYS_A_TURN = 256 };
 

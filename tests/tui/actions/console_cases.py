@@ -58,7 +58,7 @@ def starts(s):
     line(s, "run_to(7); wait(); measures().frame")
     s.wait(r"'wait'|near|syntax")  # statements are no expression: nothing has been run
     line(s, "run_to(7); wait(); print('at', measures().frame)")
-    s.wait(r"^ at\S* *[79]$")
+    s.wait(r"^ at\S* *[7-9]$")
     s.wait(r"\[Console\]")
 
 

@@ -3,15 +3,18 @@
  *     r_p d_p = b_p + Σ_i w_ip s_i,   r_p = η/Δt + 1 + D̃_p,   b_p = (η/Δt) d_pⁿ + D̃_p,
  * where s_i is diffusion l0² Δd at the nodes: s = −V⁻¹ B d, V_i = Σ V_p w_ip, B_ij = Σ V_p l0² ∇Θ_i·∇Θ_j, ∇Θ_i = D⁻¹ w_ip (x_i − x_p), of
  * the nodes' means d_i = Σ V_p w_ip d_p / V_i. Putting the first into the last, with the mean of w s / r lumped to s_i R_i,
- *     (A + B) d = c,   A_i = V_i/R_i,   c_i = A_i m_i,   R_i = Σ V_p w_ip / r_p / V_i,   m_i = Σ V_p w_ip b_p / r_p / V_i.
+ *     (A + B) d = c,   A_i = V_i/R_i,   c_i = A_i m_i,   R_i = (Σ V_p w_ip r_p^(−1/2) / V_i)²,   m_i = Σ V_p w_ip b_p / r_p / V_i.
  * Symmetric, positive definite, diagonally strong: conjugate gradients with Jacobi's preconditioner, matrix-free, from m. Sums over
  * nodes are made slot by slot and added in the order of slots, so the iterations have the same bits at any number of threads. Then each
- * particle takes its step (implicit_damage in state.h).
+ * particle takes its step (implicit_damage in state.h) with Σ w_ip R_i s_i / Σ w_ip R_i for its diffusion: of nodes that it shares with held
+ * particles (r → ∞, R small there), s is what holds those back, a pull of size l0/dx that is not for it. Where r is even this is Σ w_ip s_i.
  *
- * Where D̃ is even this is the paper's system, A_i = Σ V_p r_p w_ip. Where it is not, the paper's arithmetic mean of r lets the driven
- * particles speak for all: a node half of whose particles are broken is broken. With its increments handed back (FLIP) and only growth
- * kept, particles near a driven one then follow it, and driven ones pass their own equilibrium D̃/(1 + D̃): a band of D̃ = 20, two cells
- * wide, ended at d = 1 instead of 0.95, half as wide again, at any Δt. */
+ * R is a mean of 1/r that leans to the stiff side: a node of whose particles a share f is free, the others held at d = 1, yields f²/r. With f/r
+ * (the harmonic mean of r) nodes that hardly touch free particles yield, and beside a band held at d = 1 the whole profile lies 1.5 cells too
+ * far in. Where D̃ is even R is 1/r, whatever the mean: the paper's system, A_i = Σ V_p r_p w_ip. Where it is not, the paper's arithmetic mean
+ * of r lets the driven particles speak for all: a node half of whose particles are broken is broken. With its increments handed back (FLIP) and
+ * only growth kept, particles near a driven one then follow it, and driven ones pass their own equilibrium D̃/(1 + D̃): a band of D̃ = 20, two
+ * cells wide, ended at d = 1 instead of 0.95, half as wide again, at any Δt. */
 #include "base/memory.h"
 #include "base/threads.h"
 #include "solid/records.h"
@@ -19,8 +22,9 @@
 #include <math.h>
 
 /* Planes of nodes, [slot][PLANES][BLOCK_NODES]. The first four begin as one array of nodes, [BLOCK_NODES][NODE], in which particles' sums are made:
- * V R, V m, V l0², V. IMAGE is B × SEARCH, SPREAD what it adds up to: B × the solution, which is all that particles need. */
-enum { DIAGONAL, SOURCE, PRECONDITIONER, VOLUME, SPREAD, RESIDUAL_VECTOR, SEARCH, IMAGE, PLANES = IMPLICIT_PLANES };
+ * V √R, V m, V l0², V. IMAGE is B × SEARCH, SPREAD what it adds up to: B × the solution. In the end SPREAD holds R s and COMPLIANCE R, which is
+ * all that particles need. */
+enum { DIAGONAL, SOURCE, PRECONDITIONER, VOLUME, SPREAD, RESIDUAL_VECTOR, SEARCH, IMAGE, PLANES = IMPLICIT_PLANES, COMPLIANCE = VOLUME };
 
 enum { ITERATION_LIMIT = 1000 };
 
@@ -58,17 +62,17 @@ static bool tile_is_implicit(const solid *s, const solid_tile *tile) {
     return s->material_implicit[tile->material];
 }
 
-/* What a particle adds to its nodes: w (V/r, V b/r, V l0², V). In the slots of a momentum record. */
+/* What a particle adds to its nodes: w (V r^(−1/2), V b/r, V l0², V). In the slots of a momentum record. */
 SIMD_INLINE void system_records(const solid *s, const solid_tile *tile, real *records, kernel_kind kind, real dt) {
     const implicit_material *m = &s->implicit_materials[tile->material];
     for (int k = 0; k < tile->pack_count; k++)
         for (int part = 0; part < PACK_PARTS; part++) {
             int32_t pack = tile->first_pack + k;
             vec volume = vec_load(field_at(&s->fields[FIELD_VOLUME], pack, 0, part)), H = vec_load(field_at(&s->fields[s->history_field], pack, 0, part));
-            vec rate = scaled(s, s->viscosity_scale, pack, part, vec_all(m->eta / dt)), mobile = volume / (rate + 1 + H);
+            vec rate = scaled(s, s->viscosity_scale, pack, part, vec_all(m->eta / dt)), inverse = 1 / (rate + 1 + H);
             kernel_place at = kernel_locate(kind, vec3v_load(&s->fields[FIELD_POSITION], pack, part));
-            vec columns[RECORD] = {mobile, mobile * vec_fma(rate, vec_load(field_at(&s->fields[s->damage_field], pack, 0, part)), H),
-                                   volume * m->length2, volume};
+            vec rest = inverse * vec_fma(rate, vec_load(field_at(&s->fields[s->damage_field], pack, 0, part)), H);
+            vec columns[RECORD] = {volume * vec_sqrt(inverse), volume * rest, volume * m->length2, volume};
             kernel_weights(kind, at.u.x, columns + P2G_WX);
             kernel_weights(kind, at.u.y, columns + P2G_WY);
             kernel_weights(kind, at.u.z, columns + P2G_WZ);
@@ -246,7 +250,7 @@ static void prepare_slot(void *context, int64_t slot, int worker) {
     for (int n = 0; n < BLOCK_NODES; n++) {
         const real *sum = sums + NODE * n;
         bool used = sum[0] > 0;
-        real inverse = used ? sum[3] / sum[0] : 0;
+        real inverse = used ? (sum[3] / sum[0]) * (sum[3] / sum[0]) : 0;
         search[n] = used ? sum[1] / sum[3] : 0;
         volume[n] = sum[3];
         diagonal[n] = sum[3] * inverse;
@@ -324,18 +328,22 @@ static void turn_slot(void *context, int64_t slot, int worker) {
     memset(plane(s, slot, IMAGE), 0, BLOCK_NODES * sizeof(real));
 }
 
-/* Diffusion at the nodes, where the way back to the particles looks for it. */
+/* Diffusion at the nodes, where the way back to the particles looks for it: R s = −B d / A. */
 static void spread_slot(void *context, int64_t slot, int worker) {
     (void)worker;
     solid *s = context;
-    real *spread = plane(s, slot, SPREAD);
-    const real *volume = plane(s, slot, VOLUME);
-    for (int n = 0; n < BLOCK_NODES; n++) spread[n] = volume[n] > 0 ? -spread[n] / volume[n] : 0;
+    real *spread = plane(s, slot, SPREAD), *compliance = plane(s, slot, COMPLIANCE);
+    const real *diagonal = plane(s, slot, DIAGONAL), *volume = plane(s, slot, VOLUME);
+    for (int n = 0; n < BLOCK_NODES; n++) {
+        real inverse = diagonal[n] > 0 ? 1 / diagonal[n] : 0;
+        spread[n] *= -inverse;
+        compliance[n] = volume[n] * inverse;
+    }
 }
 
 static void no_spread_slot(void *context, int64_t slot, int worker) {
-    (void)worker;
     memset(plane(context, slot, SPREAD), 0, BLOCK_NODES * sizeof(real));
+    spread_slot(context, slot, worker);
 }
 
 static void over_slots(solid *s, void (*pass)(void *, int64_t, int), void *context) {
@@ -397,8 +405,26 @@ status implicit_solve(solid *s, real dt, report *r) {
 /* ---- back to particles ------------------------------------------------------------------------------------------- */
 
 void implicit_load_window(const solid *s, const solid_block *b, real *window) {
-    memset(window, 0, WINDOW_NODES * sizeof *window); /* see diffusion_block */
+    memset(window, 0, 2 * WINDOW_NODES * sizeof *window); /* see diffusion_block */
     exchange_plane(s, b, window, SPREAD, false);
+    exchange_plane(s, b, window + WINDOW_NODES, COMPLIANCE, false);
+}
+
+/* Σ w_ip x_i of one particle. */
+SIMD_INLINE real mean_at(const real *r, int nodes, const real *x) {
+    vec4 total = {0}, weight;
+    for (int i = 0; i < nodes; i++) {
+        vec4 sum = {0};
+        for (int j = 0; j < nodes; j++) {
+            vec4 row;
+            vec4_load(&row, x + i * STRIDE_X + j * STRIDE_Y);
+            vec4_add_scaled(&sum, &row, r[G2P_WY + j]);
+        }
+        vec4_add_scaled(&total, &sum, r[G2P_WX + i]);
+    }
+    vec4_load(&weight, r + G2P_WZ);
+    total *= weight;
+    return (total[0] + total[2]) + (total[1] + total[3]);
 }
 
 SIMD_INLINE void gather_spread(const tile_work *w, kernel_kind kind, bool weighed, const real *window) {
@@ -406,19 +432,7 @@ SIMD_INLINE void gather_spread(const tile_work *w, kernel_kind kind, bool weighe
     if (!weighed) kernel_records(w->state, w->tile, w->scratch->records, kind);
     for (int p = 0; p < w->tile->count; p++) {
         const real *r = w->scratch->records + p * RECORD, *first = window + (int)r[G2P_NODE];
-        vec4 total = {0}, weight;
-        for (int i = 0; i < nodes; i++) {
-            vec4 sum = {0};
-            for (int j = 0; j < nodes; j++) {
-                vec4 row;
-                vec4_load(&row, first + i * STRIDE_X + j * STRIDE_Y);
-                vec4_add_scaled(&sum, &row, r[G2P_WY + j]);
-            }
-            vec4_add_scaled(&total, &sum, r[G2P_WX + i]);
-        }
-        vec4_load(&weight, r + G2P_WZ);
-        total *= weight;
-        w->scratch->laplacian[p] = (total[0] + total[2]) + (total[1] + total[3]);
+        w->scratch->laplacian[p] = mean_at(r, nodes, first) / mean_at(r, nodes, first + WINDOW_NODES);
     }
     for (int p = w->tile->count; p < w->tile->pack_count * PACK; p++) w->scratch->laplacian[p] = 0;
 }

@@ -207,16 +207,18 @@ static void percentages_give_table_1(void) {
 
 static void damage_only_grows_and_only_in_tension(void) {
     material_point *p = damage_point(0.2, 0.05, 0);
-    double last = 0;
+    double last = 0, harm = 0;
+    int wrong = 0;
     for (uint64_t i = 0; i < 5000; i++) {
         double F[9];
         for (int c = 0; c < 9; c++) F[c] = (c % 4 == 0) + 0.8 * uniform((uint64_t)c, i);
         point_set(p, FIELD_DEFORMATION, F);
         p->scratch.laplacian[0] = 40 * uniform(60, i);
         update(p, 0.01 * random_unit(6, 0, i));
-        CHECK(damage_of(p) >= last && damage_of(p) <= 1 && isfinite(history_of(p)));
+        wrong += !(damage_of(p) >= last && damage_of(p) <= 1 && isfinite(history_of(p)));
         last = damage_of(p);
     }
+    CHECK_ROW("METHOD 2", "5000 updates by random F and random diffusion: times that d decreased or left [0, 1]", 0, wrong, 0);
     CHECK(last > 0.99);
     free(p);
     static const double harmless[][9] = {{0.7, 0, 0, 0, 0.7, 0, 0, 0, 0.7}, {-1.5, 0, 0, 0, 1.5, 0, 0, 0, 1.5}, {0, 0, 0, 0, 0, 0, 0, 0, 0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
@@ -224,9 +226,10 @@ static void damage_only_grows_and_only_in_tension(void) {
         p = damage_point(0.2, 0.05, 0);
         point_set(p, FIELD_DEFORMATION, harmless[i]);
         update(p, 0.01);
-        CHECK(damage_of(p) == 0 && history_of(p) == 0);
+        harm += fabs(damage_of(p)) + fabs(history_of(p));
         free(p);
     }
+    CHECK_ROW("METHOD 2", "squeezed, inverted, collapsed and undeformed particles: largest d and H", 0, harm, 0);
 }
 
 /* as_shipped: once the load is gone nothing drives; otherwise the largest force goes on doing so. */

@@ -1,22 +1,13 @@
 #!/usr/bin/env python3
 """The benchmark's contract: fields, cases, machine, and that the cracking cases crack. No test on time.
 
-Usage: test_bench.py SUNDER
+Usage: test_bench.py SUNDER [NAME...]
 """
-import csv, json, math, os, signal, subprocess, sys, tempfile, time
+import csv, json, math, os, signal, subprocess, tempfile, time
 
-SUNDER = os.path.abspath(sys.argv[1])
-ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
-SCENES = os.path.join(ROOT, "scenes")
-failures, checks = [], 0
+from harness import SOURCE, SUNDER, check, run_tests
 
-
-def check(condition, text):
-    global checks
-    checks += 1
-    if not condition:
-        failures.append(text)
-        print("  failed:", text)
+SCENES = os.path.join(SOURCE, "scenes")
 
 
 def call(*arguments, path=None):
@@ -207,7 +198,7 @@ def test_table1_failing_row_does_not_stop_the_others():
             scene.write("return 1\n")
         with open(os.path.join(scenes, "solid", "tube_pull.lua"), "w") as scene:
             scene.write(open(os.path.join(SCENES, "solid", "tube_pull.lua")).read())
-        os.symlink(os.path.join(ROOT, "recipes"), os.path.join(scenes, "recipes"))
+        os.symlink(os.path.join(SOURCE, "recipes"), os.path.join(scenes, "recipes"))
         rows, told = table1("--row", "meat", "--row", "tube_pull", "--scale", "0.02", "--frames", "1", "--warm", "0", scenes=scenes, expected=2)
     check(rows["meat"]["status"] == "failed" and "meat.lua" in rows["meat"]["note"], f"{rows['meat']}")
     check(rows["tube_pull"]["status"] == "timed", f"{rows['tube_pull']}")
@@ -253,14 +244,4 @@ def test_wrong_arguments():
         check(code == 2 and out == "" and expected in err, f"{arguments}: {code} {out} {err}")
 
 
-def main():
-    for name, test in list(globals().items()):
-        if name.startswith("test_"):
-            before = len(failures)
-            test()
-            print("ok  " if len(failures) == before else "FAIL", name, flush=True)
-    print(f"{checks} checks, {len(failures)} failed")
-    sys.exit(1 if failures or not checks else 0)
-
-
-main()
+run_tests(globals())

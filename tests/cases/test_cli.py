@@ -1,57 +1,22 @@
 #!/usr/bin/env python3
 """The command line as its users and their scripts meet it: exit codes, JSON, ledger, frames, resuming, interrupting.
 
-Usage: test_cli.py SUNDER SOURCE_DIR [NAME...]   Each test works in a folder and with a ledger of its own.
+Usage: test_cli.py SUNDER [NAME...]   Each test works in a folder and with a ledger of its own.
 """
-import glob, json, os, re, shutil, signal, sqlite3, subprocess, sys, tempfile, time
+import glob, json, os, re, signal, sqlite3, time
 
-SUNDER, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+import harness
+from harness import SOURCE, check, run_tests
+
 PULL = os.path.join(SOURCE, "scenes/solid/tube_pull.lua")
 SMALL = ["--set", "particles=1500", "--set", "break_stretch=0.02", "--set", "pull=0.6"]
-failures, checks = [], 0
 
 
-def check(condition, text):
-    global checks
-    checks += 1
-    if not condition:
-        failures.append(text)
-        print("  failed:", text)
-
-
-class Box:
-    """A scratch folder with its own ledger."""
-
-    def __enter__(self):
-        self.folder = tempfile.mkdtemp(prefix="sunder-cli-")
-        self.db = os.path.join(self.folder, "ledger.db")
-        self.environment = dict(os.environ, SUNDER_DB=self.db, XDG_DATA_HOME=os.path.join(self.folder, "data"))
-        return self
-
-    def __exit__(self, *_):
-        shutil.rmtree(self.folder)
-
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
-    def start(self, *arguments):
-        return subprocess.Popen([SUNDER, *arguments], env=self.environment, cwd=self.folder, stdout=subprocess.PIPE,
-                                stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True)
-
-    def call(self, *arguments):
-        process = self.start(*arguments)
-        out, err = process.communicate(timeout=300)
-        return process.returncode, out, err
-
-    def run(self, *arguments):
-        code, out, err = self.call("run", *arguments, "--json", "--quiet")
-        return code, json.loads(out) if out else None, err
-
+class Box(harness.Box):
     def statuses(self):
         if not os.path.exists(self.db):
             return []
-        with sqlite3.connect(self.db) as connection:
-            return [row[0] for row in connection.execute("SELECT status FROM runs ORDER BY started")]
+        return [status for status, in self.rows("SELECT status FROM runs ORDER BY started")]
 
 
 def frames_of(folder):
@@ -192,8 +157,7 @@ def test_runs_diff_shows_what_differs():
         check(code == 0 and b in out, "last is the newest")
         code, _, err = box.call("runs", "show", a[:-1] + "x")
         check(code == 2, f"an unknown run: {err}")
-        with sqlite3.connect(box.db) as connection:
-            check(connection.execute("SELECT count(*) FROM runs").fetchone()[0] == 2, "the ledger opens as a database")
+        check(box.rows("SELECT count(*) FROM runs") == [(2,)], "the ledger opens as a database")
 
 
 def test_output_is_never_overwritten():
@@ -314,15 +278,4 @@ def test_render():
         check(code == 0 and data[:4] == b"\x89PNG" and len(data) > 2000, f"a picture: {code} {err}")
 
 
-def main():
-    wanted = sys.argv[3:]
-    for name, test in list(globals().items()):
-        if name.startswith("test_") and (not wanted or name in wanted):
-            before = len(failures)
-            test()
-            print("ok  " if len(failures) == before else "FAIL", name, flush=True)
-    print(f"{checks} checks, {len(failures)} failed")
-    sys.exit(1 if failures or not checks else 0)
-
-
-main()
+run_tests(globals())

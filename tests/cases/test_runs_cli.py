@@ -1,43 +1,22 @@
 #!/usr/bin/env python3
 """What the ledger's commands do with past runs: runs best, query, sql, tag, note, rm, reproduce; plot, export, mesh; sweep --list.
 
-Usage: test_runs_cli.py SUNDER SOURCE_DIR [NAME...]   One ledger of a few small runs is made once; each test that changes it has its own.
+Usage: test_runs_cli.py SUNDER [NAME...]   One ledger of a few small runs is made once; each test that changes it has its own.
 """
-import csv, io, json, math, os, pty, shutil, sqlite3, stat, struct, subprocess, sys, tempfile, time
+import csv, io, json, math, os, pty, shutil, struct, subprocess
 
-SUNDER, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+import harness
+from harness import SOURCE, SUNDER, check, run_tests
+
 PULL = os.path.join(SOURCE, "scenes/solid/tube_pull.lua")
 SMALL = ["--set", "particles=600", "--set", "break_stretch=0.02", "--set", "pull=0.6"]
-failures, checks = [], 0
 
 
-def check(condition, text):
-    global checks
-    checks += 1
-    if not condition:
-        failures.append(text)
-        print("  failed:", text)
-
-
-class Box:
-    """A scratch folder with its own ledger."""
-
+class Box(harness.Box):
     def __enter__(self):
-        self.folder = tempfile.mkdtemp(prefix="sunder-runs-")
-        self.db = os.path.join(self.folder, "ledger.db")
-        self.environment = dict(os.environ, SUNDER_DB=self.db, XDG_DATA_HOME=os.path.join(self.folder, "data"), COLUMNS="200")
+        super().__enter__()
+        self.environment["COLUMNS"] = "200"
         return self
-
-    def __exit__(self, *_):
-        shutil.rmtree(self.folder)
-
-    def path(self, name):
-        return os.path.join(self.folder, name)
-
-    def call(self, *arguments, stdin=subprocess.DEVNULL, environment=None):
-        process = subprocess.run([SUNDER, *arguments], env=environment or self.environment, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                 stdin=stdin, text=True, timeout=300)
-        return process.returncode, process.stdout, process.stderr
 
     def json(self, *arguments):
         code, out, err = self.call(*arguments, "--json")
@@ -48,10 +27,6 @@ class Box:
         code, out, err = self.call("run", PULL, *SMALL, "--frames", frames, "--threads", "1", *arguments, "--json", "--quiet")
         check(code == 0, f"a run: {err}")
         return json.loads(out)
-
-    def rows(self, sql):
-        with sqlite3.connect(self.db) as connection:
-            return connection.execute(sql).fetchall()
 
 
 def test_asking(box, runs):
@@ -102,10 +77,7 @@ def test_taking_away():
         check(not os.path.exists(first["out"]) and os.listdir(box.path("mine")) == ["picture.png"], "files are gone, a stranger's stays")
         check(box.rows("SELECT count(*) FROM runs")[0][0] == 0 and box.rows("SELECT count(*) FROM run_measures")[0][0] == 0, "rows are gone")
         third = box.make()
-        box_db = sqlite3.connect(box.db)
-        box_db.execute("UPDATE runs SET output = ?", (box.folder,))
-        box_db.commit()
-        box_db.close()
+        box.rows("UPDATE runs SET output = ?", box.folder)
         code, _, err = box.call("runs", "rm", third["run_id"], "--yes")
         check(code == 2 and os.path.exists(box.db) and os.path.exists(third["out"]), "a folder that is no run's is left alone")
         check(box.rows("SELECT count(*) FROM runs")[0][0] == 1, "and so is the row")
@@ -302,19 +274,6 @@ def test_sweep_list():
         check(box.call("sweep", "little.lua", "--list")[1].count("  done before  ") == 4, "all is done")
 
 
-def main():
-    wanted = sys.argv[3:]
-    tests = {name[5:]: test for name, test in globals().items() if name.startswith("test_")}
-    with Box() as box:
-        runs = [box.make("--set", f"eta={eta}") for eta in (0.1, 0.4)]
-        for name, test in tests.items():
-            if wanted and name not in wanted:
-                continue
-            before = len(failures)
-            test(box, runs) if test.__code__.co_argcount == 2 else test()
-            print("FAIL" if len(failures) > before else "ok  ", name, flush=True)
-    print(f"{checks} checks, {len(failures)} failed")
-    return 1 if failures or not checks else 0
-
-
-sys.exit(main())
+with Box() as shared:
+    made = [shared.make("--set", f"eta={eta}") for eta in (0.1, 0.4)]
+    run_tests(globals(), shared, made)

@@ -1,25 +1,16 @@
 #!/usr/bin/env python3
 """The mechanics of the solid paper's figures, at reduced size: what breaks, in which direction, which variant does not.
 
-Usage: test_scenes.py SUNDER SOURCE_DIR [NAME...]   Each run works in a scratch folder and with a ledger of its own.
+Usage: test_scenes.py SUNDER [NAME...]   Each run works in a scratch folder and with a ledger of its own.
 Each run has one thread: ctest runs tests side by side.
 Directions come from the gradient of damage at rest, as the summary's crack_normal does; here also for plates that are
 thinner than three cells, and in polar coordinates. Frames are read through the HDF5 library that the program itself uses.
 """
-import glob, json, math, os, shutil, sqlite3, subprocess, sys, tempfile
+import glob, json, math, os
 
+import harness
 from frame_reader import FrameReader
-
-SUNDER, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
-failures, checks = [], 0
-
-
-def check(condition, text):
-    global checks
-    checks += 1
-    if not condition:
-        failures.append(text)
-        print("  failed:", text)
+from harness import SOURCE, SUNDER, check, run_tests
 
 
 class Frames(FrameReader):
@@ -38,22 +29,8 @@ class Frames(FrameReader):
         return [(rest[int(i)], d) for i, d in zip(self.read(run, last, "id"), self.read(run, last, "damage"))]
 
 
-class Box:
-    """A scratch folder with its own ledger."""
-
-    def __enter__(self):
-        self.folder, self.count = tempfile.mkdtemp(prefix="sunder-scenes-"), 0
-        self.db = os.path.join(self.folder, "ledger.db")
-        self.environment = dict(os.environ, SUNDER_DB=self.db, XDG_DATA_HOME=os.path.join(self.folder, "data"))
-        return self
-
-    def __exit__(self, *_):
-        shutil.rmtree(self.folder)
-
-    def call(self, *arguments):
-        done = subprocess.run([SUNDER, *arguments], env=self.environment, cwd=self.folder, stdin=subprocess.DEVNULL, capture_output=True,
-                              text=True, timeout=600)
-        return done.returncode, done.stdout, done.stderr
+class Box(harness.Box):
+    count = 0
 
     def run(self, scene, frames, particles, **settings):
         """A finished run's summary; its dx beside it."""
@@ -61,7 +38,7 @@ class Box:
         chosen = [part for key, value in dict(particles=particles, **settings).items() for part in ("--set", f"{key}={value}")]
         path = os.path.join(SOURCE, f"scenes/solid/{scene}.lua")
         limit = ["--frames", str(frames)] if frames else []
-        code, out, err = self.call("run", path, *chosen, *limit, "--threads", "1", "--out", os.path.join(self.folder, f"run{self.count}"), "--json", "--quiet")
+        code, out, err = self.call("run", path, *chosen, *limit, "--threads", "1", "--out", self.path(f"run{self.count}"), "--json", "--quiet")
         if code:
             raise RuntimeError(f"{scene} {settings}: exit code {code}: {err.strip()[-300:]}")
         summary = json.loads(out)
@@ -69,8 +46,7 @@ class Box:
         return summary
 
     def series(self, run, name):
-        with sqlite3.connect(self.db) as connection:
-            return [v for v, in connection.execute("SELECT value FROM measures_view WHERE id = ? AND name = ? ORDER BY frame", (run["run_id"], name))]
+        return [v for v, in self.rows("SELECT value FROM measures_view WHERE id = ? AND name = ? ORDER BY frame", run["run_id"], name)]
 
 
 frames = Frames(SUNDER)
@@ -472,18 +448,4 @@ def test_locking():
         check(locked < 0.9, f"perturbed elastic fibres lock: {locked}")
 
 
-def main():
-    wanted = sys.argv[3:]
-    for name, test in list(globals().items()):
-        if name.startswith("test_") and (not wanted or name in wanted):
-            before = len(failures)
-            try:
-                test()
-            except (RuntimeError, OSError, TypeError) as error:
-                check(False, f"{name}: {error}")
-            print("ok  " if len(failures) == before else "FAIL", name, flush=True)
-    print(f"{checks} checks, {len(failures)} failed")
-    sys.exit(1 if failures or not checks else 0)
-
-
-main()
+run_tests(globals())

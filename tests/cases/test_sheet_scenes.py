@@ -1,23 +1,14 @@
 #!/usr/bin/env python3
 """The figures of the sheet paper: what breaks, where, and whether it is the same on both sides (METHOD.md section 7).
 
-Usage: test_sheet_scenes.py SUNDER SOURCE_DIR [NAME...]   Each run works in a scratch folder and with a ledger of its own, in f64.
+Usage: test_sheet_scenes.py SUNDER [NAME...]   Each run works in a scratch folder and with a ledger of its own, in f64.
 Frames are read through the HDF5 library that the program itself uses. Bonds are told by their middles at rest.
 """
-import json, math, os, shutil, subprocess, sys, tempfile
+import json, math, os, shutil, subprocess
 
+import harness
 from frame_reader import FrameReader
-
-SUNDER, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
-failures, checks = [], 0
-
-
-def check(condition, text):
-    global checks
-    checks += 1
-    if not condition:
-        failures.append(text)
-        print("  failed:", text)
+from harness import SOURCE, SUNDER, check, run_tests
 
 
 class Bonds(FrameReader):
@@ -58,24 +49,15 @@ class Run:
         return self.summary["frames"]
 
 
-class Box:
-    def __enter__(self):
-        self.folder = tempfile.mkdtemp(prefix="sunder-sheets-")
-        return self
-
-    def __exit__(self, *_):
-        shutil.rmtree(self.folder, ignore_errors=True)
-
+class Box(harness.Box):
     def run(self, scene, label="", **settings):
-        out = os.path.join(self.folder, f"{scene}{label}{len(os.listdir(self.folder))}")
-        command = [SUNDER, "run", os.path.join(SOURCE, "scenes/sheet", scene + ".lua"), "--precision", "f64", "--json", "--quiet", "--out", out,
-                   "--db", os.path.join(self.folder, "ledger.db"), "--checkpoint-every", "0"]
-        for key, value in settings.items():
-            command += ["--set", f"{key.replace('__', '.')}={value}"]
-        done = subprocess.run(command, capture_output=True, text=True)
-        if done.returncode != 0:
-            raise RuntimeError(f"{scene}: {done.stderr[-500:]}")
-        return Run(out, json.loads(done.stdout))
+        out = self.path(f"{scene}{label}{len(os.listdir(self.folder))}")
+        chosen = [part for key, value in settings.items() for part in ("--set", f"{key.replace('__', '.')}={value}")]
+        code, summary, err = super().run(os.path.join(SOURCE, "scenes/sheet", scene + ".lua"), "--precision", "f64", "--out", out,
+                                         "--checkpoint-every", "0", *chosen)
+        if code:
+            raise RuntimeError(f"{scene}: {err[-500:]}")
+        return Run(out, summary)
 
 
 def mirror_difference(bonds, axis):
@@ -213,23 +195,17 @@ def test_seeds():
         check(theta[0] != theta[2], "another seed sprays others")
 
 
-def command(box, *arguments):
-    environment = dict(os.environ, SUNDER_DB=os.path.join(box.folder, "ledger.db"), XDG_DATA_HOME=os.path.join(box.folder, "data"))
-    done = subprocess.run([SUNDER, *arguments], env=environment, cwd=box.folder, capture_output=True, text=True)
-    return done.returncode, done.stdout, done.stderr
-
-
 def test_resume_and_files():
     """A resumed run goes on with the same bits; a frame holds what the file format promises; explain and the summary say what runs."""
     scene = os.path.join(SOURCE, "scenes/sheet/rubber.lua")
     settings = ["--set", "variant=wet", "--set", "pull=0.5", "--json", "--quiet"]
     with Box() as box:
-        code, out, err = command(box, "run", scene, "--frames", "24", "--threads", "2", *settings)
+        code, out, err = box.call("run", scene, "--frames", "24", "--threads", "2", *settings)
         whole = json.loads(out)
         check(code == 0 and whole["bonds"]["broken"] > 30, f"the whole run breaks: {err}")
-        code, out, err = command(box, "run", scene, "--frames", "13", "--threads", "1", *settings)
+        code, out, err = box.call("run", scene, "--frames", "13", "--threads", "1", *settings)
         part = json.loads(out)
-        code, out, err = command(box, "run", "--resume", part["run_id"], "--frames", "11", "--json", "--quiet")
+        code, out, err = box.call("run", "--resume", part["run_id"], "--frames", "11", "--json", "--quiet")
         check(code == 0, f"resume: {err}")
         again = json.loads(out)
         check(again["state_hash"] == whole["state_hash"] and again["bonds"] == whole["bonds"] and again["steps"] == whole["steps"], "resumed: same bits")
@@ -241,7 +217,7 @@ def test_resume_and_files():
         check(sum(library.read(first, last, "bond_broken")) == whole["bonds"]["broken"], "bond_broken agrees with the summary")
         listed = subprocess.run(["h5ls", f"{first}/frames/{last:06d}.hdf/sheet"], capture_output=True, text=True) if shutil.which("h5ls") else None
         check(listed is None or ("bond_broken" in listed.stdout and "bonds" not in listed.stdout), "bonds stand in frame 0 alone")
-        code, out, err = command(box, "explain", scene, "--set", "variant=wet", "--json")
+        code, out, err = box.call("explain", scene, "--set", "variant=wet", "--json")
         plan = json.loads(out)
         check(code == 0 and {"rubber", "fracture", "diffusion", "swelling", "softening", "boundary"} == set(plan["effects_on"]), f"explain: {plan['effects_on']}")
         check("rubber.bonds" in plan["stages"] and "diffusion.after" in plan["stages"] and "boundary.advance" in plan["stages"], f"stages: {plan['stages']}")
@@ -256,18 +232,18 @@ def test_wrong_scenes():
     }
     with Box() as box:
         for line, expected in cases.items():
-            path = os.path.join(box.folder, "scene.lua")
+            path = box.path("scene.lua")
             with open(path, "w") as file:
                 file.write('local s = require "sunder"\nreturn s.scene { dx = 0.1, duration = 1, sheets = { { shape = s.disk { radius = 1 },\n'
                            + ("" if "thickness" in line else "thickness = 0.1, ") + 'material = { density = 1, linear = { E = 1 } },\n' + line + " } } }\n")
-            code, out, err = command(box, "check", path)
+            code, out, err = box.call("check", path)
             check(code == 2 and expected in err and "scene.lua:" in err, f"{line}: {code} {err}")
         for material, expected in (("linear = { E = 1 }, elastic = { E = 1 }", "an effect of sheets"), ("elastic = { E = 1 }", "an effect of sheets"),
                                    ("linear = { E = 1 }, swelling = 0.1", "diffusion"), ("fracture = 1", "linear")):
             with open(path, "w") as file:
                 file.write('local s = require "sunder"\nreturn s.scene { dx = 0.1, duration = 1, sheets = { { shape = s.disk { radius = 1 }, thickness = 0.1,\n'
                            "material = { density = 1, " + material + " } } } }\n")
-            code, out, err = command(box, "check", path)
+            code, out, err = box.call("check", path)
             check(code == 2 and expected in err, f"{material}: {code} {err}")
 
 
@@ -278,30 +254,16 @@ def test_shapes_of_sheets():
         "s.rectangle { size = { 2, 1 } } - s.disk { radius = 0.3 }": 2 - math.pi * 0.09,
     }
     with Box() as box:
-        path = os.path.join(box.folder, "scene.lua")
+        path = box.path("scene.lua")
         for lattice, per in (("square", 1.0), ("hexagonal", math.sqrt(0.75)), ("scattered", 1.0)):
             for shape, area in list(shapes.items()) + ([("s.sphere { radius = 0.5 }, surface = true", math.pi)] if lattice == "scattered" else []):
                 with open(path, "w") as file:
                     file.write('local s = require "sunder"\nreturn s.scene { duration = 1, sheets = { { shape = ' + shape + f", spacing = 0.04, lattice = '{lattice}',\n"
                                "radius = 2.1, thickness = 0.1, material = { density = 1, linear = { E = 1 } } } } }\n")
-                code, out, err = command(box, "run", path, "--frames", "0", "--json", "--quiet")
+                code, out, err = box.call("run", path, "--frames", "0", "--json", "--quiet")
                 count = json.loads(out)["particles"] if code == 0 else -1
                 expected = area / (0.04 ** 2 * per)
                 check(abs(count / expected - 1) < (0.15 if lattice == "scattered" else 0.05), f"{lattice} {shape}: {count} for {expected:.0f}: {err}")
 
 
-def main():
-    wanted = sys.argv[3:]
-    for name, test in list(globals().items()):
-        if name.startswith("test_") and (not wanted or name in wanted):
-            before = len(failures)
-            try:
-                test()
-            except (RuntimeError, OSError, TypeError, StopIteration) as error:
-                check(False, f"{name}: {error!r}")
-            print("ok  " if len(failures) == before else "FAIL", name, flush=True)
-    print(f"{checks} checks, {len(failures)} failed")
-    sys.exit(1 if failures or not checks else 0)
-
-
-main()
+run_tests(globals())

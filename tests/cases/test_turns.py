@@ -3,57 +3,26 @@
 
 A run with turns has the same bits as any other that was given them: on other threads, after a kill and a resume, as a branch of one that was not.
 
-Usage: test_turns.py SUNDER SOURCE_DIR [NAME...]   Each test works in a folder and with a ledger of its own.
+Usage: test_turns.py SUNDER [NAME...]   Each test works in a folder and with a ledger of its own.
 """
-import glob, json, os, shutil, signal, sqlite3, subprocess, sys, tempfile, time
+import glob, json, os, shutil, signal, time
 
-SUNDER, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+import harness
+from harness import SOURCE, check, run_tests
+
 PULL = os.path.join(SOURCE, "scenes/solid/tube_pull.lua")
 TOWEL = os.path.join(SOURCE, "scenes/sheet/paper_towel.lua")
 SMALL = ["--set", "particles=1500", "--set", "break_stretch=0.02", "--set", "pull=0.6"]
 WET = ["--set", "variant=wet", "--set", "dx=0.06", "--set", "pull=1"]
 TURNS = ["2:eta=0.01", "2:tube.fibres.gamma=25", "4:break_stretch=0.01", "5:gravity=0,-3,0"]
 WET_TURNS = ["1:sources.1.strength=3", "2:softening.stiffness=0.9", "3:diffusion.k=2"]
-failures, checks = [], 0
 
 
-def check(condition, text):
-    global checks
-    checks += 1
-    if not condition:
-        failures.append(text)
-        print("  failed:", text)
-
-
-class Box:
-    """A scratch folder with its own ledger."""
-
-    def __enter__(self):
-        self.folder = tempfile.mkdtemp(prefix="sunder-turns-")
-        self.db = os.path.join(self.folder, "ledger.db")
-        self.environment = dict(os.environ, SUNDER_DB=self.db, XDG_DATA_HOME=os.path.join(self.folder, "data"))
-        return self
-
-    def __exit__(self, *_):
-        shutil.rmtree(self.folder)
-
-    def start(self, *arguments):
-        return subprocess.Popen([SUNDER, "run", *arguments, "--json", "--quiet"], env=self.environment, cwd=self.folder,
-                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True)
-
-    def run(self, *arguments):
-        process = self.start(*arguments)
-        out, err = process.communicate(timeout=300)
-        return process.returncode, json.loads(out) if out else None, err
-
+class Box(harness.Box):
     def good(self, *arguments):
         code, result, err = self.run(*arguments)
         check(code == 0, f"{' '.join(arguments)}: exit code {code}: {err}")
         return result
-
-    def rows(self, sql, *values):
-        with sqlite3.connect(self.db) as connection:
-            return connection.execute(sql, values).fetchall()
 
 
 def turned(turns):
@@ -95,7 +64,7 @@ def test_turns_are_told():
 def kill_after(box, frame, *arguments):
     """Starts a run, kills it once it has written a frame, and returns its id."""
     before = box.rows("SELECT count(*) FROM runs")[0][0]
-    process = box.start(*arguments)
+    process = box.start_run(*arguments)
     deadline = time.time() + 120
     while time.time() < deadline and process.poll() is None:
         row = box.rows("SELECT output FROM runs ORDER BY run LIMIT 1 OFFSET ?", before)
@@ -175,8 +144,7 @@ def test_a_branch_finds_its_way_from_an_older_checkpoint():
             same = [os.path.samefile(os.path.join(parent["out"], "frames", f"{f:06d}.hdf"), os.path.join(branch["out"], "frames", f"{f:06d}.hdf")) for f in range(8)]
             check(same == [True] * 5 + [False] * 3, f"frames of the past are the parent's files: {same}")
             shutil.rmtree(parent["out"])
-            code = subprocess.run([SUNDER, "render", branch["run_id"], "--frame", "2", "--out", os.path.join(box.folder, "p.png")], env=box.environment,
-                                  cwd=box.folder, capture_output=True).returncode
+            code, _, _ = box.call("render", branch["run_id"], "--frame", "2", "--out", box.path("p.png"))
             check(code == 0, "a branch has its frames though its parent's folder is gone")
 
 
@@ -245,14 +213,4 @@ def test_what_is_wrong():
         check(box.rows("SELECT count(*) FROM runs")[0][0] == count, "what is wrong leaves no row")
 
 
-def main():
-    names = sys.argv[3:] or [name for name in globals() if name.startswith("test_")]
-    for name in names:
-        before = len(failures)
-        globals()[name]()
-        print("ok  " if len(failures) == before else "FAIL", name[5:], flush=True)
-    print(f"{checks} checks, {len(failures)} failed")
-    sys.exit(1 if failures or not checks else 0)
-
-
-main()
+run_tests(globals())

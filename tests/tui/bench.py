@@ -1,23 +1,54 @@
 """The workbench in a terminal of its own, over a ledger of its own: what the cases of every screen drive."""
-import json
 import os
 import re
 import shutil
-import subprocess
+import sqlite3
+import sys
 import tempfile
 import time
+import traceback
 
-import test_tui
-from test_tui import PATIENCE, Failure, Screen, check  # noqa: F401 (cases import them from here)
+import terminal
+from terminal import PATIENCE, Failure, Screen, check
 
 SUNDER, SCENES = "", ""
-CASES = {}
+CASES, TESTS = {}, {}
 
 
-def use(sunder, scenes):
+def use_arguments(usage):
+    """Takes the program and its scenes from the command line; ends with the code of a wrong usage, or of a skipped test without tmux."""
     global SUNDER, SCENES
-    SUNDER, SCENES = sunder, scenes
-    test_tui.DEMO = sunder
+    if len(sys.argv) < 3:
+        print(usage)
+        sys.exit(2)
+    if not shutil.which("tmux"):
+        print("skipped: tmux is not installed")
+        sys.exit(77)
+    SUNDER, SCENES = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+    terminal.PROGRAM = SUNDER
+
+
+def test(function):
+    """This function is a test, by its name."""
+    TESTS[function.__name__] = function
+    return function
+
+
+def run_tests(usage):
+    """Runs the tests that the command line names, or all of them, and ends the program."""
+    use_arguments(usage)
+    failed = 0
+    for name in sys.argv[3:] or TESTS:
+        try:
+            TESTS[name]()
+            print(f"ok   {name}", flush=True)
+        except Exception as error:  # whatever it is, it is this test's failure
+            failed += 1
+            if not isinstance(error, Failure):
+                traceback.print_exc()
+            print(f"FAIL {name}: {error if isinstance(error, Failure) else repr(error)}", flush=True)
+    print(f"{len(sys.argv[3:] or TESTS)} tests, {failed} failed")
+    sys.exit(1 if failed or not TESTS else 0)
 
 
 class Case:
@@ -67,8 +98,8 @@ class Bench:
         return getattr(self.screen, name)
 
     def sql(self, query):
-        done = subprocess.run(["sqlite3", "-json", self.ledger, query], capture_output=True, text=True, check=True)
-        return [list(row.values()) for row in json.loads(done.stdout or "[]")]
+        with sqlite3.connect(self.ledger) as connection:
+            return [list(row) for row in connection.execute(query)]
 
     def until(self, what, condition):
         """Waits until a function says so."""

@@ -11,9 +11,9 @@ import sys
 import tempfile
 import time
 
+import terminal
 import terminal_picture
-import test_tui
-from test_tui import Failure, Screen
+from terminal import Failure, Screen
 
 SHOTS = {}
 SCENES = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scenes"))
@@ -186,7 +186,7 @@ def fill_library(sunder, home):
 
 def take(sunder, name, out, library):
     chosen = SHOTS[name]
-    test_tui.DEMO = sunder
+    terminal.PROGRAM = sunder
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as own:
         home = library if chosen.library else own
         variables = f"export XDG_DATA_HOME={home} XDG_CONFIG_HOME={home};{f' cd {home};' if chosen.library else ''}"

@@ -9,13 +9,12 @@ import concurrent.futures
 import importlib
 import json
 import os
-import shutil
 import subprocess
 import sys
 import traceback
 
 import bench
-from test_tui import Failure
+from terminal import Failure
 
 FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "actions")
 
@@ -34,20 +33,15 @@ def run(case):
         with bench.Bench(**case.options) as s:
             case.function(s)
         return None
-    except (Failure, AssertionError, OSError, subprocess.SubprocessError, KeyError, IndexError, ValueError, AttributeError) as error:
-        if not isinstance(error, Failure):
-            traceback.print_exc()
-        return str(error) or repr(error)
+    except Failure as failure:
+        return str(failure)
+    except Exception as error:  # whatever it is, it is this case's failure
+        traceback.print_exc()
+        return repr(error)
 
 
 def main():
-    if len(sys.argv) < 3:
-        print(__doc__)
-        return 2
-    if not shutil.which("tmux"):
-        print("skipped: tmux is not installed")
-        return 77
-    bench.use(os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]))
+    bench.use_arguments(__doc__)
     cases = load_cases()
     listed = json.loads(subprocess.run([bench.SUNDER, "help", "actions", "--json"], capture_output=True, text=True, check=True).stdout)
     names = [action["name"] for action in listed]

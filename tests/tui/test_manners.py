@@ -14,23 +14,15 @@ import signal
 import statistics
 import struct
 import subprocess
-import sys
 import tempfile
 import termios
 import time
-import traceback
 
 import bench
-from bench import Bench, check
-from test_tui import COLOUR, PATIENCE, Failure
+from bench import Bench, check, test
+from terminal import COLOUR, PATIENCE
 
-TESTS = {}
 SMALL_RUN = "solid/tube_pull.lua --set particles=900 --frames 3"
-
-
-def test(function):
-    TESTS[function.__name__] = function
-    return function
 
 
 def screens():
@@ -238,27 +230,5 @@ def keys_are_answered_while_scenes_are_read():
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def main():
-    if len(sys.argv) < 3:
-        print(__doc__)
-        return 2
-    if not shutil.which("tmux"):
-        print("skipped: tmux is not installed")
-        return 77
-    bench.use(os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]))
-    failed = 0
-    for name in sys.argv[3:] or TESTS:
-        try:
-            TESTS[name]()
-            print(f"ok   {name}", flush=True)
-        except (Failure, AssertionError, OSError, subprocess.SubprocessError, KeyError, IndexError, ValueError) as error:
-            failed += 1
-            print(f"FAIL {name}: {error}", flush=True)
-            if not isinstance(error, Failure):
-                traceback.print_exc()
-    print(f"{len(sys.argv[3:] or TESTS)} tests, {failed} failed")
-    return 1 if failed else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    bench.run_tests(__doc__)

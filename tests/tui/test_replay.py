@@ -6,19 +6,9 @@ import json
 import os
 import shutil
 import subprocess
-import sys
-import traceback
 
 import bench
-from bench import Bench, check
-from test_tui import Failure
-
-TESTS = {}
-
-
-def test(function):
-    TESTS[function.__name__] = function
-    return function
+from bench import Bench, check, test
 
 
 def hashes(s):
@@ -204,27 +194,5 @@ def config_binds_keys_and_wrong_ones_are_told():
             s.paused()
 
 
-def main():
-    if len(sys.argv) < 3:
-        print(__doc__)
-        return 2
-    if not shutil.which("tmux"):
-        print("skipped: tmux is not installed")
-        return 77
-    bench.use(os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]))
-    failed = 0
-    for name in sys.argv[3:] or TESTS:
-        try:
-            TESTS[name]()
-            print(f"ok   {name}", flush=True)
-        except (Failure, AssertionError, OSError, subprocess.SubprocessError, KeyError, IndexError, ValueError) as error:
-            failed += 1
-            print(f"FAIL {name}: {error}", flush=True)
-            if not isinstance(error, Failure):
-                traceback.print_exc()
-    print(f"{len(sys.argv[3:] or TESTS)} tests, {failed} failed")
-    return 1 if failed else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    bench.run_tests(__doc__)

@@ -82,7 +82,7 @@ def table_is_filtered_and_sorted(s):
 
 @covers("runs.mark", "runs.unmark", "runs.diff", "runs.detail", "runs.beside", start=None)
 def marked_runs_are_compared(s):
-    ids = runs(s)
+    runs(s)
     s.keys("d")
     s.wait(r"Mark two runs")
     s.keys("Space", "Space")

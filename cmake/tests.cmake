@@ -12,3 +12,10 @@ file(GLOB TEST_LISTS CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/cmake/tests_*.cmake)
 foreach(list ${TEST_LISTS})
   include(${list})
 endforeach()
+
+# Tests in which threads share data: what ./dev test --tsan runs.
+foreach(name base determinism tetra_state inextensible damage_grid knobs sheet_determinism sheet_multirate both_kinds session console turns tui tui_actions)
+  if(TEST ${name})
+    set_property(TEST ${name} APPEND PROPERTY LABELS threads)
+  endif()
+endforeach()

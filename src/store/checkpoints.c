@@ -156,6 +156,7 @@ status checkpoint_write(const char *folder, const frame_header *header, const re
     if (!s) {
         make_seal(image.block, image.size - SEAL, XXH3_64bits(image.block + SEAL, image.size - SEAL));
         s = file_write_whole(path, image.block, image.size, r);
+        if (!s) file_forget(path);
     }
     hdf_image_free(&image);
     return s;

@@ -130,6 +130,13 @@ status file_commit(const char *temporary, const char *path, report *r) {
     return file_fail(r, path, "rename the new file to it", error);
 }
 
+void file_forget(const char *path) {
+    int fd = open(path, O_RDONLY | O_CLOEXEC);
+    if (fd < 0) return;
+    (void)posix_fadvise(fd, 0, 0, POSIX_FADV_DONTNEED);
+    close(fd);
+}
+
 status file_write_whole(const char *path, const void *data, size_t size, report *r) {
     char temporary[FILE_PATH], folder[FILE_PATH];
     status s = file_write_beside(path, data, size, temporary, r);

@@ -32,6 +32,10 @@ status file_write_beside(const char *path, const void *data, size_t size, char t
 /* Renames the temporary file to `path` (removing it when that fails). The folder is not synced. */
 status file_commit(const char *temporary, const char *path, report *r);
 
+/* Tells the system that a synced file will hardly be read soon, so that its memory serves the next one: memory that has not been used before is slow
+ * to come by under a hypervisor. */
+void file_forget(const char *path);
+
 /* Writes `path` whole or not at all, and syncs its folder. */
 status file_write_whole(const char *path, const void *data, size_t size, report *r);
 

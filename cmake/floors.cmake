@@ -1,6 +1,10 @@
 # The floors, from the ground up: each has a CMakeLists.txt of its own and links only what lies below it.
-set(SUNDER_FLOORS base geom effect solid sheet sim store script view session tui cli CACHE STRING "Floors to build: a developer of a low one need not build the rest")
-foreach(floor ${SUNDER_FLOORS})
+set(SUNDER_ONLY_FLOORS "" CACHE STRING "Floors to build, all if empty: a developer of a low one need not build the rest")
+set(floors base geom effect solid sheet sim store script view session study tui cli)
+if(SUNDER_ONLY_FLOORS)
+  set(floors ${SUNDER_ONLY_FLOORS})
+endif()
+foreach(floor ${floors})
   if(EXISTS ${CMAKE_SOURCE_DIR}/src/${floor}/CMakeLists.txt)
     add_subdirectory(src/${floor})
   endif()

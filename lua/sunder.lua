@@ -132,6 +132,14 @@ end
 ---@field contact? "sticky"|"slip"|"separate"
 ---@field friction? number
 
+--- What a hard case expects of its run. A measure's bare number is the bound of its sense (`sunder stress --measures`); { low, high } is a range.
+---@class Expect
+---@field stop? string  it must end with a message that has these words, instead of running to its end
+---@field known_limit? string  it does not hold, and this says why and where that is written
+---@field turns? { frame: integer, knob: string, value: any }[]  knobs that are turned while it runs
+---@field same_as? { variant: string, tolerance: number, length: number?, shift: Vector? }  its last places are those of another variant
+---@field [string] number|number[]
+
 ---@class Scene
 ---@field title? string
 ---@field units? string  a name for the system of units ("SI", "cgs"); output carries it
@@ -148,6 +156,7 @@ end
 ---@field kernel? "quadratic"|"cubic"
 ---@field laplacian? "quadratic"|"cubic"
 ---@field domain? { min: Vector, max: Vector }
+---@field expect? Expect  of a hard case: what `sunder stress` holds its run against (docs/stress.md)
 ---@field gravity? Vector
 ---@field mass_damping? number
 ---@field solids? Solid[]

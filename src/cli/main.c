@@ -16,6 +16,9 @@ static const command commands[] = {
     {"explain", "explain SCENE [--set KEY=VALUE]… [--json]", "show the plan: effects, fields, bytes, step limits, cost", command_explain},
     {"sweep", "sweep SCRIPT.lua [-j N] [--list] [--set KEY=VALUE]… [--frames N] [--threads N] [--db FILE] [--json] [--quiet] [--verbose]",
      "run a scene over lists of values; what is done already is left out", command_sweep},
+    {"stress", "stress [CASE]… [--effect NAME]… [--quick | --full] [--precision f32|f64|both] [--simd NAME] [--threads N] [-j N] [--time-limit S]\n"
+               "                [--db FILE] [--json] [--quiet] [--verbose]   stress --list | --last | --measures  [--json]",
+     "make the hard cases (scenes/stress) and hold each against what it must come to; --list: what they cover", command_stress},
     {"runs", "runs list [--where CONDITION] [--limit N] | show RUN | diff RUN RUN | best [MEASURE] [--most] [--scene TEXT] | query [NAME [KEY=VALUE]…]\n"
              "         runs sql QUERY [KEY=VALUE]… | plot RUN… | tag RUN [TAG]… [--remove] | note RUN TEXT | rm RUN… [--yes] [--keep-files]\n"
              "         runs reproduce RUN [--out DIR] [--threads N]      all with [--db FILE] [--json]",

@@ -304,6 +304,10 @@ void read_scene(lua_State *L, const char *file);
 /* Reads one of `sheets`. */
 void read_sheet(script *s, int index, const place *p, int number);
 
+/* ---- expect.c ---- */
+/* Reads `expect`, what a hard case expects of its run. */
+void read_expect(script *s, int index, const place *p);
+
 /* ---- sweep.c ---- */
 /* Reads the table that a sweep's file returned (top of the stack); `path` is where the file is, from the working folder. */
 struct sweep;

@@ -292,8 +292,8 @@ static void read_scene_key(script *s, int index, const place *p, int key) {
 }
 
 static void report_unknown(script *s, const place *p, const char *name) {
-    const char *names[2 * EFFECT_LIMIT + LISTS + 64] = {"domain"};
-    int count = 1, effects;
+    const char *names[2 * EFFECT_LIMIT + LISTS + 64] = {"domain", "expect"};
+    int count = 2, effects;
     const effect *const *all = effect_catalogue(&effects);
     for (int i = 0; i < LISTS; i++) names[count++] = lists[i].name;
     for (int i = 0; i < scene_key_count(); i++) names[count++] = scene_key_name(i);
@@ -322,6 +322,8 @@ static void read_key(script *s, const char *name, const place *p) {
         }
     if (strcmp(name, "domain") == 0)
         read_domain(s, value, p);
+    else if (strcmp(name, "expect") == 0)
+        read_expect(s, value, p);
     else
         report_unknown(s, p, name);
 }

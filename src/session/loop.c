@@ -57,7 +57,13 @@ static void log_frame(session *s, double seconds) {
         {"crack_normal_z", s->measures.has_crack ? s->measures.crack_normal[2] : NAN},
         {"determinant_min", m->determinant_min}, {"determinant_max", m->determinant_max}, {"speed_max", m->speed_max},
         {"fibre_stretch_min", m->stretch_min}, {"fibre_stretch_max", m->stretch_max},
-        {"dt_min", s->measures.dt_min},
+        {"dt_min", s->measures.dt_min}, {"mass", m->mass},
+        {"momentum_x", m->momentum[0]}, {"momentum_y", m->momentum[1]}, {"momentum_z", m->momentum[2]},
+        {"angular_momentum_x", m->angular_momentum[0]}, {"angular_momentum_y", m->angular_momentum[1]},
+        {"angular_momentum_z", m->angular_momentum[2]},
+        {"grip_impulse_x", m->grip_impulse[0]}, {"grip_impulse_y", m->grip_impulse[1]}, {"grip_impulse_z", m->grip_impulse[2]},
+        {"bond_stretch_max", s->measures.has_sheet ? s->measures.sheet.stretch_max : NAN},
+        {"diffused_total", s->measures.has_sheet ? s->measures.sheet.diffused_total : NAN},
     };
     report r;
     session_tolerate(s, ledger_frame(s->ledger, s->id, s->measures.frame, s->measures.time, s->measures.steps, seconds, values,

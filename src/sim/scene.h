@@ -11,6 +11,7 @@
 #include "geom/sampling.h"
 #include "geom/sampling_sheet.h"
 #include "geom/shape.h"
+#include "sim/hard_case.h"
 
 #include <stdint.h>
 
@@ -156,6 +157,7 @@ typedef struct scene {
     scene_grip grips[SCENE_GRIPS];
     scene_collider colliders[SCENE_COLLIDERS];
     scene_parameter parameters[SCENE_PARAMETERS];
+    hard_case hard; /* what `sunder stress` expects of it */
 } scene;
 
 /* A scene with every default in place, in an arena of its own. NULL when out of memory. */

@@ -15,8 +15,9 @@ declare -A may_use=(
     [script]="base geom effect sim"
     [view]="base"
     [session]="base geom effect sim store script view"
-    [tui]="base geom effect solid sheet sim store script view session"
-    [cli]="base geom effect solid sheet sim store script view session tui"
+    [study]="base geom effect sim store script session"
+    [tui]="base geom effect solid sheet sim store script view session study"
+    [cli]="base geom effect solid sheet sim store script view session study tui"
 )
 readonly line_limit=800
 readonly foreign_headers='lua|lauxlib|lualib|luaconf|n?curses|panel|sqlite3|hdf5'

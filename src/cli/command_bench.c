@@ -1,6 +1,7 @@
 /* sunder bench: how fast steps are on this machine, beside what the machine could do. */
 #include "cli/cli.h"
 
+#include "base/clock.h"
 #include "base/json.h"
 #include "base/machine.h"
 #include "base/names.h"
@@ -11,7 +12,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { CHOICES = 8, ROWS = 256 };
 static const double BUDGET = 540; /* seconds of the default matrix: the contract's ten minutes, less the rows' set-up */
@@ -275,10 +275,7 @@ static int print_json(const bench_request *q, const bench_report *b) {
     for (int i = 0; i < b->row_count; i++) json_row(&w, q, b, &b->rows[i]);
     json_array_end(&w);
     json_object_end(&w);
-    status code = json_finish(&w, &r);
-    if (code == STATUS_OK) puts(w.text);
-    json_free(&w);
-    return code == STATUS_OK ? 0 : cli_fail(&r);
+    return cli_print_json(&w, &r) == STATUS_OK ? 0 : cli_fail(&r);
 }
 
 /* One line a row, for docs/bench/plot.gp. */
@@ -317,12 +314,6 @@ static status measure_machine(const bench_request *q, bench_report *b, report *r
     return code;
 }
 
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* Lists the matrix: small bodies first, so that most is known early. */
 static status list_rows(const bench_request *q, bench_report *b, report *r) {
     int combinations = q->size_count * q->case_count * 4 * q->precision_count * q->thread_count;
@@ -343,11 +334,11 @@ static status list_rows(const bench_request *q, bench_report *b, report *r) {
 }
 
 static status measure_rows(const bench_request *q, bench_report *b, FILE *out, report *r) {
-    double deadline = now() + BUDGET;
+    double deadline = clock_seconds() + BUDGET;
     status code = list_rows(q, b, r);
     for (int i = 0; i < b->row_count && code == STATUS_OK; i++) {
         bench_row *row = &b->rows[i];
-        double share = (deadline - now()) / (b->row_count - i);
+        double share = (deadline - clock_seconds()) / (b->row_count - i);
         if (!q->full) row->options.limit = fmin(row->options.limit, share);
         code = bench_step(&row->options, &row->result, r);
         if (code == STATUS_OK) print_row(q, b, row, out);

@@ -1,6 +1,7 @@
 /* sunder bench constraint: what a solve of inextensible fibres takes, by preconditioner, with and without the last step's tension. */
 #include "cli/cli.h"
 
+#include "base/clock.h"
 #include "base/json.h"
 #include "base/sparse.h"
 #include "sim/simulation.h"
@@ -8,7 +9,6 @@
 #include <getopt.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { SETTINGS = 4 };
 
@@ -74,13 +74,12 @@ static int parse(constraint_request *q, int count, char **arguments) {
 /* Frames passed over, then frames timed. */
 static status advance(simulation *s, const constraint_request *q, constraint_row *row, report *r) {
     simulation_measures before, after;
-    struct timespec from, to;
     status code = STATUS_OK;
     for (int i = 0; i < q->warm && code == STATUS_OK; i++) code = simulation_advance(s, NULL, r);
     if (code == STATUS_OK) code = simulation_measure(s, &before, r);
-    clock_gettime(CLOCK_MONOTONIC, &from);
+    double start = clock_seconds();
     for (int i = 0; i < q->frames && code == STATUS_OK; i++) code = simulation_advance(s, NULL, r);
-    clock_gettime(CLOCK_MONOTONIC, &to);
+    row->seconds = clock_seconds() - start;
     if (code == STATUS_OK) code = simulation_measure(s, &after, r);
     if (code != STATUS_OK) return code;
     row->particles = simulation_get_plan(s)->particles;
@@ -89,7 +88,6 @@ static status advance(simulation *s, const constraint_request *q, constraint_row
     row->iterations = after.solid.constraint_iterations - before.solid.constraint_iterations;
     row->factorisations = after.solid.constraint_factorisations - before.solid.constraint_factorisations;
     row->solving = after.solid.constraint_seconds - before.solid.constraint_seconds;
-    row->seconds = (double)(to.tv_sec - from.tv_sec) + 1e-9 * (double)(to.tv_nsec - from.tv_nsec);
     return STATUS_OK;
 }
 
@@ -152,10 +150,7 @@ static int print_json(const constraint_row *rows, int count) {
     for (int i = 0; i < count; i++) write_row(&w, &rows[i]);
     json_array_end(&w);
     json_object_end(&w);
-    status code = json_finish(&w, &r);
-    if (code == STATUS_OK) puts(w.text);
-    json_free(&w);
-    return code == STATUS_OK ? 0 : cli_fail(&r);
+    return cli_print_json(&w, &r) == STATUS_OK ? 0 : cli_fail(&r);
 }
 
 static bool can(const char *solver) {

@@ -1,4 +1,5 @@
 /* The sheet engine's life: creating, stepping, reporting limits. */
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/threads.h"
 #include "sheet/state.h"
@@ -6,16 +7,9 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
-#include <time.h>
 
 #define SHEET_EFFECT_ADDRESS(name) &SHEET_EFFECT(name),
 const effect *const sheet_effect_table[SHEET_EFFECTS] = {SHEET_EFFECT_LIST(SHEET_EFFECT_ADDRESS)};
-
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* ---- plans and constants ----------------------------------------------------------------------------------------- */
 
@@ -211,13 +205,13 @@ static void parts(sheet *s, double dt) {
     rigid_motion motions[SHEET_BOUNDARIES];
     for (int b = 0; b < s->definition.boundary_count; b++) motions[b] = s->definition.boundaries[b].motion;
     for (int part = 0; part < count; part++) {
-        double t0 = now();
+        double t0 = clock_seconds();
         if (state_based(s)) sheet_for_due(s, dt, part, dilate);
         sheet_for_due(s, dt, part, pull);
-        double t1 = now();
+        double t1 = clock_seconds();
         sheet_advance(s, dt, part);
         s->seconds[SHEET_PHASE_BONDS] += t1 - t0;
-        s->seconds[SHEET_PHASE_ADVANCE] += now() - t1;
+        s->seconds[SHEET_PHASE_ADVANCE] += clock_seconds() - t1;
         s->bond_updates += PACK * (s->rates ? s->rates->active_slots[part == 0 ? 0 : s->rates->finest - __builtin_ctz((unsigned)part)] : s->slot_count);
         for (int b = 0; b < s->definition.boundary_count && part + 1 < count; b++)
             if (motions[b].active) rigid_motion_advance(&s->definition.boundaries[b].motion, dt / count);
@@ -226,20 +220,20 @@ static void parts(sheet *s, double dt) {
 }
 
 static status step(sheet *s, double time, double dt, sheet_fault *fault, report *r) {
-    double t0 = now();
+    double t0 = clock_seconds();
     sheet_take_hold(s);
     reset_results(s);
     if (s->rates) sheet_rates_choose(s, dt);
     for (int e = 0; e < SHEET_EFFECTS; e++)
         if ((s->mask >> e & 1) && sheet_effect_table[e]->sheet->before && sheet_effect_table[e]->sheet->before(s, (real)dt, r) != STATUS_OK)
             return r->code;
-    double t1 = now();
+    double t1 = clock_seconds();
     s->seconds[SHEET_PHASE_CONTACT] += t1 - t0;
     parts(s, dt);
-    double t3 = now();
+    double t3 = clock_seconds();
     for (int e = 0; e < SHEET_EFFECTS; e++)
         if ((s->mask >> e & 1) && sheet_effect_table[e]->sheet->after) sheet_effect_table[e]->sheet->after(s, time + dt, dt);
-    s->seconds[SHEET_PHASE_DIFFUSION] += now() - t3;
+    s->seconds[SHEET_PHASE_DIFFUSION] += clock_seconds() - t3;
     return reduce_results(s, dt, fault, r);
 }
 

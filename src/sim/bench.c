@@ -1,5 +1,6 @@
 #include "sim/bench.h"
 
+#include "base/clock.h"
 #include "base/eigen.h"
 #include "base/memory.h"
 #include "solid/moduli.h"
@@ -7,7 +8,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 const char *const bench_phase_names[BENCH_PHASES] = {"sort", "p2g", "grid", "g2p", "measure", "other"};
 _Static_assert(SOLID_PHASES == 4, "a phase of the engine needs its name here");
@@ -39,12 +39,6 @@ int bench_cases(const bench_case **cases) {
 bench_options bench_options_default(void) {
     return (bench_options){.which = &all_cases[0], .precision = 32, .threads = 1, .particles = 50000, .simd = "auto",
                            .seconds = 0.3, .limit = 8, .repeat = 3};
-}
-
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 /* ---- the scene --------------------------------------------------------------------------------------------------- */
@@ -270,16 +264,16 @@ static status run_frames(simulation *sim, int frames, repetition *out, report *r
     double before[SOLID_PHASES], after[SOLID_PHASES], measuring = 0, inside = 0;
     int64_t first = simulation_steps(sim);
     engine->phases(state, before);
-    double start = now();
+    double start = clock_seconds();
     for (int f = 0; f < frames; f++) {
         simulation_measures m;
         status code = simulation_advance(sim, NULL, r);
-        double at = now();
+        double at = clock_seconds();
         if (code == STATUS_OK) code = simulation_measure(sim, &m, r);
         if (code != STATUS_OK) return code;
-        measuring += now() - at;
+        measuring += clock_seconds() - at;
     }
-    out->seconds = now() - start;
+    out->seconds = clock_seconds() - start;
     engine->phases(state, after);
     for (int p = 0; p < SOLID_PHASES; p++) {
         out->phases[p] = after[p] - before[p];
@@ -306,8 +300,8 @@ static repetition middle(repetition *all, int count) {
 static status repeat(simulation *sim, const record_list *start, const bench_options *o, int frames, bench_result *out, report *r) {
     repetition all[BENCH_REPEATS];
     int count = 0;
-    double begun = now();
-    while (count == 0 || (count < o->repeat && count < BENCH_REPEATS && now() - begun < o->limit)) {
+    double begun = clock_seconds();
+    while (count == 0 || (count < o->repeat && count < BENCH_REPEATS && clock_seconds() - begun < o->limit)) {
         status code = simulation_restore(sim, start, r);
         if (code == STATUS_OK) code = run_frames(sim, frames, &all[count], r);
         if (code != STATUS_OK) return code;

@@ -1,10 +1,10 @@
 #include "sim/bench_sheet.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
 
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
 const char *const sheet_bench_phase_names[SHEET_PHASES] = {"bonds", "diffusion", "before", "advance"};
 
@@ -18,12 +18,6 @@ typedef struct bench_sheet_state {
     sheet *state;
     double time, dt;
 } bench_sheet_state;
-
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void set(bench_sheet_state *b, const char *name, const char *key, double value) {
     for (int e = 0; e < b->engine->effect_count; e++) {
@@ -80,10 +74,10 @@ typedef struct repetition {
 } repetition;
 
 static status time_steps(bench_sheet_state *b, int64_t steps, repetition *out, report *r) {
-    double before[SHEET_PHASES], start = now();
+    double before[SHEET_PHASES], start = clock_seconds();
     b->engine->phases(b->state, before);
     status code = run_steps(b, steps, r);
-    out->seconds = now() - start;
+    out->seconds = clock_seconds() - start;
     b->engine->phases(b->state, out->phases);
     for (int p = 0; p < SHEET_PHASES; p++) out->phases[p] -= before[p];
     return code;

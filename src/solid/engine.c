@@ -1,4 +1,5 @@
 /* The solid engine's life: creating, stepping, reporting limits. */
+#include "base/clock.h"
 #include "base/memory.h"
 #include "solid/inextensible.h"
 #include "solid/order.h"
@@ -6,18 +7,11 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
-#include <time.h>
 
 #define SOLID_EFFECT_ADDRESS(name) &SOLID_EFFECT(name),
 static const effect *const effects[SOLID_EFFECTS] = {SOLID_EFFECT_LIST(SOLID_EFFECT_ADDRESS)};
 
 enum { PHASE_SORT, PHASE_P2G, PHASE_GRID, PHASE_G2P };
-
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static int add_field(solid *s, const char *name, int components) {
     for (int i = 0; i < s->field_count; i++)
@@ -182,9 +176,9 @@ static status examine(solid *s, double dt, solid_fault *fault, report *r) {
 }
 
 static status sort(solid *s, report *r) {
-    double start = now();
+    double start = clock_seconds();
     status code = particles_sort(s, r);
-    s->seconds[PHASE_SORT] += now() - start;
+    s->seconds[PHASE_SORT] += clock_seconds() - start;
     return code;
 }
 
@@ -200,9 +194,9 @@ static status solve_effects(solid *s, real dt, report *r) {
         bool done = false; /* one solve serves all damage models */
         for (int before = 0; before < e; before++) done |= (s->mask >> before & 1) && effects[before]->stages->solve == effects[e]->stages->solve;
         if (done) continue;
-        double start = now();
+        double start = clock_seconds();
         status code = effects[e]->stages->solve(s, dt, r);
-        s->solving[e] += now() - start;
+        s->solving[e] += clock_seconds() - start;
         if (code != STATUS_OK) return code;
     }
     return STATUS_OK;
@@ -211,9 +205,9 @@ static status solve_effects(solid *s, real dt, report *r) {
 static status constrain(solid *s, real dt, report *r) {
     for (int e = 0; e < s->effect_count; e++) {
         if (!(s->mask >> e & 1) || !effects[e]->stages->constrain) continue;
-        double start = now();
+        double start = clock_seconds();
         status code = effects[e]->stages->constrain(s, dt, r);
-        s->solving[e] += now() - start;
+        s->solving[e] += clock_seconds() - start;
         if (code != STATUS_OK) return code;
     }
     return STATUS_OK;
@@ -224,17 +218,17 @@ static status step(solid *s, double dt, solid_fault *fault, report *r) {
         status code = sort(s, r);
         if (code != STATUS_OK) return code;
     }
-    double t0 = now();
+    double t0 = clock_seconds();
     transfer_to_grid(s, (real)dt);
-    double t1 = now();
+    double t1 = clock_seconds();
     status solved = solve_effects(s, (real)dt, r);
     if (solved != STATUS_OK) return solved;
     grid_update(s, (real)dt);
     status constrained = constrain(s, (real)dt, r);
     if (constrained != STATUS_OK) return constrained;
-    double t2 = now();
+    double t2 = clock_seconds();
     transfer_to_particles(s, (real)dt);
-    double t3 = now();
+    double t3 = clock_seconds();
     s->seconds[PHASE_P2G] += t1 - t0;
     s->seconds[PHASE_GRID] += t2 - t1;
     s->seconds[PHASE_G2P] += t3 - t2;

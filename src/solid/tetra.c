@@ -7,6 +7,7 @@
  * Step limit: with K = Σ V Bᵀ (∂²Ψ/∂F²) B and lumped masses, ω² ≤ the largest over elements of 4 h s/ρ0, h a bound of the largest eigenvalue of
  * ∂²Ψ/∂F² (effects' stage `stiffness`) and s that of Σ ∇N ∇Nᵀ (Rayleigh's quotient is no more than the largest of its parts); symplectic Euler is
  * stable to Δt = 2/ω. Beside it F may change in a step by no more than half of max(1, |F|): what h was computed from must hold for the step. */
+#include "base/clock.h"
 #include "solid/tetra.h"
 #include "base/memory.h"
 #include "base/threads.h"
@@ -14,7 +15,6 @@
 
 #include <math.h>
 #include <stddef.h>
-#include <time.h>
 
 enum { PHASE_ELEMENTS = 1, PHASE_VERTICES, PHASE_LIMITS };
 extern const solid_engine solid_tetra_table;
@@ -22,12 +22,6 @@ extern const solid_engine solid_tetra_table;
 
 static tetra *whole(const solid *s) {
     return (tetra *)(uintptr_t)s; /* base comes first */
-}
-
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 /* Calls a stage of the effects of the tile's material, in their order. */
@@ -246,13 +240,13 @@ static status sort(solid *s, report *r) {
 
 static status step(solid *s, double dt, solid_fault *fault, report *r) {
     tetra *m = whole(s);
-    double t0 = now();
+    double t0 = clock_seconds();
     parallel_for(s->threads, s->tile_count, 4, tile_forces, m);
-    double t1 = now();
+    double t1 = clock_seconds();
     move_vertices(m, (real)dt);
-    double t2 = now();
+    double t2 = clock_seconds();
     tetra_deform(m);
-    double t3 = now();
+    double t3 = clock_seconds();
     s->seconds[PHASE_ELEMENTS] += t1 - t0;
     s->seconds[PHASE_VERTICES] += t2 - t1;
     s->seconds[PHASE_LIMITS] += t3 - t2;

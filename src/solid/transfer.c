@@ -5,12 +5,12 @@
  *     w_ip (m v + Q (x_i − x_p), m),
  * and takes back v = Σ w v_i, L = D⁻¹ Σ w v_i (x_i − x_p)ᵀ. Distances are in units of dx; the four momenta-and-mass of four nodes along z
  * are one row. The damage channel, Σ w d and Σ w, rides along with its own kernel. */
+#include "base/clock.h"
 #include "base/threads.h"
 #include "solid/order.h"
 #include "solid/records.h"
 
 #include <stddef.h>
-#include <time.h>
 
 /* ---- particles to grid ------------------------------------------------------------------------------------------- */
 
@@ -173,22 +173,16 @@ static bool sees_damage(const solid *s, const solid_block *b) {
     return false;
 }
 
-static double seconds_now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* Whether a block looks at the clock; what it starts from. */
 static double start_look(solid *s, int64_t block, int worker, int pass) {
     if ((block + s->looks) % BLOCKS_A_LOOK != 0) return 0;
     s->workers[worker].tile.lap = s->workers[worker].clocks[pass].effect;
-    return seconds_now();
+    return clock_seconds();
 }
 
 static void end_look(solid *s, int worker, int pass, double start) {
     if (start == 0) return;
-    s->workers[worker].clocks[pass].all += seconds_now() - start;
+    s->workers[worker].clocks[pass].all += clock_seconds() - start;
     s->workers[worker].tile.lap = NULL;
 }
 
@@ -201,9 +195,9 @@ static void call_stage(tile_work *w, size_t stage_offset) {
         if (!stage) continue;
         w->effect = e;
         w->constants = s->constants[w->tile->material][e];
-        double *lap = w->scratch->lap, start = lap ? seconds_now() : 0;
+        double *lap = w->scratch->lap, start = lap ? clock_seconds() : 0;
         stage(w);
-        if (lap) lap[e] += seconds_now() - start;
+        if (lap) lap[e] += clock_seconds() - start;
     }
 }
 

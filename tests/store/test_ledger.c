@@ -1,4 +1,5 @@
 /* The ledger: opening, writing, finding runs again, dead runs, many writers. What is printed: test_ledger_print.c. */
+#include "base/clock.h"
 #include "base/memory.h"
 #include "check.h"
 #include "ledger_scratch.h"
@@ -7,7 +8,6 @@
 #include <math.h>
 #include <signal.h>
 #include <sys/resource.h>
-#include <time.h>
 
 /* ---- opening ----------------------------------------------------------------------------------------------------- */
 
@@ -421,13 +421,10 @@ static int at_once(int count, int (*task)(void *context), void *context) {
 
 static void four_writers_all_succeed(void) {
     char path[SCRATCH_PATH];
-    struct timespec start, end;
     snprintf(path, sizeof path, "%s/many.db", scratch); /* it does not exist yet: they race for its schema too */
-    clock_gettime(CLOCK_MONOTONIC, &start);
+    double start = clock_seconds();
     CHECK(at_once(WRITERS, write_many, path) == 0);
-    clock_gettime(CLOCK_MONOTONIC, &end);
-    printf("  %d writers × %d transactions: %.2f s\n", (int)WRITERS, (int)TRANSACTIONS,
-           (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec));
+    printf("  %d writers × %d transactions: %.2f s\n", (int)WRITERS, (int)TRANSACTIONS, clock_seconds() - start);
     CHECK(sql_is("many.db", "SELECT count(*) || ' ' || count(DISTINCT run) FROM frames", "800 4"));
     CHECK(sql_is("many.db", "SELECT count(*) FROM run_measures", "1600"));
     CHECK(sql_is("many.db", "SELECT count(*) FROM runs WHERE status = 'done'", "4"));

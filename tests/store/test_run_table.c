@@ -1,4 +1,5 @@
 /* The table of runs: its cells are the ledger's, and filters and orders are what SQL says they are. */
+#include "base/clock.h"
 #include "ledger_scratch.h"
 #include "check.h"
 
@@ -6,13 +7,6 @@
 #include "store/run_curves.h"
 #include "store/run_table.h"
 
-#include <time.h>
-
-static double seconds(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* Three runs of different eta, the last one still going. */
 static ledger *three_runs(const char *name, char ids[3][LEDGER_ID]) {
@@ -173,18 +167,18 @@ static void test_many(void) {
            "SELECT k FROM m);"
            "INSERT INTO frames SELECT run, f, f * 0.1, f, f FROM runs, (SELECT 0 AS f UNION SELECT 1 UNION SELECT 2) WHERE run > 1;"
            "INSERT INTO run_measures SELECT run, frame, measure, run * 0.001 * frame FROM frames, measures WHERE run > 1;");
-    double start = seconds();
+    double start = clock_seconds();
     CHECK(run_table_read(l, &t, &r) == STATUS_OK && run_table_rows(t) == MANY);
-    double read = seconds();
+    double read = clock_seconds();
     int *rows = memory_allocate_array(MANY, sizeof *rows), count;
     CHECK(run_table_filter(t, "p7<7000 broken_fraction>0.5 tube", rows, &count, &r) == STATUS_OK);
-    double first = seconds();
+    double first = clock_seconds();
     CHECK(count == 749); /* runs 251 … 999: 7 run < 7000 and 0.002 run > 0.5 */
     CHECK(run_table_filter(t, "p7<7000 broken_fraction>0.5 tube", rows, &count, &r) == STATUS_OK && count == 749);
-    double again = seconds();
+    double again = clock_seconds();
     CHECK(run_table_filter(t, "", rows, &count, &r) == STATUS_OK && count == MANY);
     CHECK(run_table_sort(t, "p3", true, rows, count, &r) == STATUS_OK && strcmp(run_table_id(t, rows[0]), "20261122-010000-abcd") == 0);
-    double sorted = seconds();
+    double sorted = clock_seconds();
     printf("  10000 runs: read %.0f ms, first filter with two new columns %.0f ms, again %.1f ms, sort %.1f ms\n", 1e3 * (read - start), 1e3 * (first - read),
            1e3 * (again - first), 1e3 * (sorted - again));
     memory_free(rows, MANY * sizeof *rows);

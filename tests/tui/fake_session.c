@@ -1,5 +1,6 @@
 #include "tui/fake_session.h"
 
+#include "base/clock.h"
 #include "session/recall.h"
 
 #include "base/memory.h"
@@ -29,12 +30,6 @@ struct session {
     atomic_bool stop, abandon;
     double started;
 };
-
-static double clock_now(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static void sleep_for(double seconds) {
     struct timespec span = {(time_t)seconds, (long)(1e9 * (seconds - floor(seconds)))};
@@ -112,7 +107,7 @@ static void publish_frame(session *s, int64_t frame) {
     out->time = out->duration * t;
     out->seconds_per_frame = s->options.frame_seconds;
     out->seconds_left = s->options.frame_seconds * (double)(s->options.frames - frame);
-    out->wall = clock_now() - s->started;
+    out->wall = clock_seconds() - s->started;
     out->step_wall = 0.9 * out->wall;
     deform(s, torn);
     measure(s, torn);
@@ -226,7 +221,7 @@ session *fake_session_start(const fake_options *options) {
     if (!s) return NULL;
     s->options = *options;
     s->paused = options->start_paused;
-    s->started = clock_now();
+    s->started = clock_seconds();
     size_t count = (size_t)options->particles;
     s->rest = memory_allocate_array(3 * count, sizeof(float));
     s->state.position = memory_allocate_array(3 * count, sizeof(float));
@@ -349,12 +344,12 @@ void session_abandon(session *s) {
 }
 
 bool session_wait(session *s, double seconds) {
-    double until = clock_now() + seconds;
+    double until = clock_seconds() + seconds;
     for (;;) {
         pthread_mutex_lock(&s->lock);
         bool ended = s->state.state == SESSION_ENDED;
         pthread_mutex_unlock(&s->lock);
-        if (ended || (seconds >= 0 && clock_now() >= until)) return ended;
+        if (ended || (seconds >= 0 && clock_seconds() >= until)) return ended;
         sleep_for(0.005);
     }
 }

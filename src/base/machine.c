@@ -1,6 +1,8 @@
 #include "base/machine.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
+#include "base/processor.h"
 #include "base/threads.h"
 
 #include <math.h>
@@ -8,16 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/utsname.h>
-#include <time.h>
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
-
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* ---- what the system says ---------------------------------------------------------------------------------------- */
 
@@ -113,9 +108,9 @@ status machine_triad(int threads, double *gb_s, report *r) {
         parallel_for(threads, chunks, 1, triad_fill, &t);
         double best = HUGE_VAL;
         for (int pass = 0; pass < TRIAD_PASSES; pass++) {
-            double start = now();
+            double start = clock_seconds();
             parallel_for(threads, chunks, 1, triad_pass, &t);
-            best = fmin(best, now() - start);
+            best = fmin(best, clock_seconds() - start);
         }
         *gb_s = 3e-9 * (double)bytes / best;
     }
@@ -162,9 +157,8 @@ typedef struct fma_kernel {
 
 static fma_kernel best_kernel(void) {
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f")) return (fma_kernel){"avx512", {fma_f32_avx512, fma_f64_avx512}, {2 * 16 * 16, 2 * 16 * 8}};
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-        return (fma_kernel){"avx2", {fma_f32_avx2, fma_f64_avx2}, {2 * 12 * 8, 2 * 12 * 4}};
+    if (processor_has("avx512")) return (fma_kernel){"avx512", {fma_f32_avx512, fma_f64_avx512}, {2 * 16 * 16, 2 * 16 * 8}};
+    if (processor_has("avx2")) return (fma_kernel){"avx2", {fma_f32_avx2, fma_f64_avx2}, {2 * 12 * 8, 2 * 12 * 4}};
 #endif
     return (fma_kernel){"plain", {fma_f32_plain, fma_f64_plain}, {2 * 12 * 4, 2 * 12 * 2}};
 }
@@ -177,10 +171,10 @@ double machine_fma(int precision, const char **simd) {
     *simd = kernel.simd;
     double best = HUGE_VAL;
     for (int pass = 0; pass < PASSES; pass++) {
-        double start = now();
+        double start = clock_seconds();
         double sum = kernel.run[which](rounds);
         __asm__ volatile("" : : "m"(sum)); /* it is wanted */
-        best = fmin(best, now() - start);
+        best = fmin(best, clock_seconds() - start);
     }
     return 1e-9 * kernel.flops[which] * (double)rounds / best;
 }

@@ -1,6 +1,8 @@
 /* Which variant runs: the best instruction set that this processor has, unless one is asked for by name. */
 #include "sheet/sheet.h"
 
+#include "base/processor.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,17 +11,6 @@ extern const sheet_engine sheet_engine_table_f32_plain, sheet_engine_table_f64_p
 extern const sheet_engine sheet_engine_table_f32_avx2, sheet_engine_table_f64_avx2;
 extern const sheet_engine sheet_engine_table_f32_avx512, sheet_engine_table_f64_avx512;
 #endif
-
-static int processor_has(const char *simd) {
-    if (strcmp(simd, "plain") == 0) return 1;
-#ifdef SUNDER_HAS_X86
-    if (strcmp(simd, "avx2") == 0) return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    if (strcmp(simd, "avx512") == 0)
-        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
-               __builtin_cpu_supports("avx512vl");
-#endif
-    return 0;
-}
 
 const sheet_engine *sheet_engine_find(int precision, const char *simd) {
     static const sheet_engine *const engines[] = {

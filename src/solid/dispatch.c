@@ -1,6 +1,8 @@
 /* Which variant runs: the best instruction set that this processor has, unless one is asked for by name. */
 #include "solid/solid.h"
 
+#include "base/processor.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,17 +21,6 @@ DECLARE(avx512)
 static const solid_engine *const points[] = {EACH(solid_engine_table)};
 static const solid_engine *const meshes[] = {EACH(solid_tetra_table)};
 enum { VARIANTS = sizeof points / sizeof *points };
-
-static int processor_has(const char *simd) {
-    if (strcmp(simd, "plain") == 0) return 1;
-#ifdef SUNDER_HAS_X86
-    if (strcmp(simd, "avx2") == 0) return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    if (strcmp(simd, "avx512") == 0)
-        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
-               __builtin_cpu_supports("avx512vl");
-#endif
-    return 0;
-}
 
 static const solid_engine *find(const solid_engine *const *engines, int precision, const char *simd) {
     int any = !simd || strcmp(simd, "auto") == 0;

@@ -1,5 +1,6 @@
 #include "cli/time_scene.h"
 
+#include "base/compare.h"
 #include "session/session.h"
 #include "sim/simulation.h"
 
@@ -45,13 +46,8 @@ static status make_folder(char folder[256], report *r) {
 
 /* ---- from a run's samples to figures ----------------------------------------------------------------------------- */
 
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double median(double *values, int count) {
-    qsort(values, (size_t)count, sizeof *values, by_size);
+    qsort(values, (size_t)count, sizeof *values, compare_f64);
     return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
 }
 

@@ -1,6 +1,8 @@
 /* Cutting triangles whose sides are too long: a side is cut or not by its own length alone, so neighbours agree. */
 #include "geom/mesh_build.h"
 
+#include "base/compare.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,11 +24,6 @@ static uint64_t side_key(int32_t a, int32_t b) {
     return a < b ? (uint64_t)a << 32 | (uint32_t)b : (uint64_t)b << 32 | (uint32_t)a;
 }
 
-static int compare_keys(const void *a, const void *b) {
-    uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
-    return x < y ? -1 : x > y;
-}
-
 /* The sides to be cut, sorted, each once; how many. */
 static int64_t collect(const mesh *m, double square, uint64_t *keys) {
     int64_t found = 0, kept = 0;
@@ -35,7 +32,7 @@ static int64_t collect(const mesh *m, double square, uint64_t *keys) {
             int32_t a = m->triangle[3 * t + k], b = m->triangle[3 * t + (k + 1) % 3];
             if (side_square(m, a, b) > square) keys[found++] = side_key(a, b);
         }
-    qsort(keys, (size_t)found, sizeof *keys, compare_keys);
+    qsort(keys, (size_t)found, sizeof *keys, compare_u64);
     for (int64_t i = 0; i < found; i++)
         if (i == 0 || keys[i] != keys[i - 1]) keys[kept++] = keys[i];
     return kept;
@@ -44,7 +41,7 @@ static int64_t collect(const mesh *m, double square, uint64_t *keys) {
 /* The new vertex in the middle of a side, −1 where it is not cut. */
 static int64_t middle_of(const uint64_t *keys, int64_t count, int64_t first, int32_t a, int32_t b) {
     uint64_t key = side_key(a, b);
-    const uint64_t *found = bsearch(&key, keys, (size_t)count, sizeof *keys, compare_keys);
+    const uint64_t *found = bsearch(&key, keys, (size_t)count, sizeof *keys, compare_u64);
     return found ? first + (found - keys) : -1;
 }
 

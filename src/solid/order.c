@@ -1,5 +1,6 @@
 #include "solid/order.h"
 
+#include "base/compare.h"
 #include "base/memory.h"
 #include "base/random.h"
 
@@ -49,11 +50,6 @@ int32_t order_rank(const solid *s, uint64_t key) {
     return s->block_keys[entry] ? s->block_ranks[entry] : -1;
 }
 
-static int compare_keys(const void *a, const void *b) {
-    uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
-    return (x > y) - (x < y);
-}
-
 status order_grow(void **array, int32_t *capacity, int32_t need, size_t size, const char *what, report *r) {
     if (need <= *capacity) return STATUS_OK;
     int32_t wanted = need + need / 8 + 16;
@@ -71,7 +67,7 @@ status order_rank_all(solid *s, int32_t *count, report *r) {
     int32_t n = 0;
     for (int64_t i = 0; i < s->hash_capacity; i++)
         if (s->block_keys[i]) s->block_list[n++] = s->block_keys[i];
-    qsort(s->block_list, (size_t)n, sizeof *s->block_list, compare_keys);
+    qsort(s->block_list, (size_t)n, sizeof *s->block_list, compare_u64);
     for (int32_t i = 0; i < n; i++) s->block_ranks[find_entry(s, s->block_list[i])] = i;
     *count = n;
     return STATUS_OK;

@@ -3,6 +3,7 @@
  * themselves. */
 #include "store/frames.h"
 
+#include "base/compare.h"
 #include "store/files.h"
 #include "store/hdf.h"
 
@@ -25,11 +26,6 @@ static status checkpoint_path(char path[FILE_PATH], const char *folder, int64_t 
 
 /* ---- hashes ------------------------------------------------------------------------------------------------------ */
 
-static int by_value(const void *a, const void *b) {
-    uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
-    return (x > y) - (x < y);
-}
-
 static uint64_t record_hash(const record *item) {
     struct {
         uint64_t name, unit, data;
@@ -49,7 +45,7 @@ static uint64_t record_hash(const record *item) {
 static void content_hash(const record_list *records, char text[HASH_TEXT]) {
     uint64_t hashes[RECORD_LIMIT];
     for (int i = 0; i < records->count; i++) hashes[i] = record_hash(&records->items[i]);
-    qsort(hashes, (size_t)records->count, sizeof hashes[0], by_value);
+    qsort(hashes, (size_t)records->count, sizeof hashes[0], compare_u64);
     snprintf(text, HASH_TEXT, "%016" PRIx64, (uint64_t)XXH3_64bits(hashes, (size_t)records->count * sizeof hashes[0]));
 }
 

@@ -1,5 +1,6 @@
 #include "store/files.h"
 
+#include "base/compare.h"
 #include "base/memory.h"
 #include "store/frames.h"
 
@@ -203,11 +204,6 @@ static status append_number(file_numbers *numbers, int64_t number, report *r) {
     return STATUS_OK;
 }
 
-static int ascending(const void *a, const void *b) {
-    int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
-    return (x > y) - (x < y);
-}
-
 status file_numbers_read(const char *folder, const char *prefix, const char *suffix, file_numbers *numbers, report *r) {
     *numbers = (file_numbers){0};
     DIR *directory = opendir(folder);
@@ -223,7 +219,7 @@ status file_numbers_read(const char *folder, const char *prefix, const char *suf
     if (!s && errno) s = file_fail(r, folder, "list the folder", errno);
     closedir(directory);
     if (s) file_numbers_free(numbers);
-    if (numbers->count > 1) qsort(numbers->items, numbers->count, sizeof numbers->items[0], ascending);
+    if (numbers->count > 1) qsort(numbers->items, numbers->count, sizeof numbers->items[0], compare_i64);
     return s;
 }
 

@@ -1,5 +1,6 @@
 #include "tui/particle_view.h"
 
+#include "base/compare.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -40,11 +41,6 @@ void particle_view_match(particle_view *view, const particle_view *with) {
 
 /* ---- the camera follows ------------------------------------------------------------------------------------------ */
 
-static int compare_floats(const void *a, const void *b) {
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 /* Where nearly all of the material is along an axis: a few particles that fly off must not shrink everything else. */
 static bool spread(const particle_points *points, int axis, float *low, float *high) {
     float sample[SPREAD_SAMPLE];
@@ -55,7 +51,7 @@ static bool spread(const particle_points *points, int axis, float *low, float *h
         if (isfinite(x)) sample[count++] = x;
     }
     if (count == 0) return false;
-    qsort(sample, (size_t)count, sizeof(float), compare_floats);
+    qsort(sample, (size_t)count, sizeof(float), compare_f32);
     *low = sample[count / 50];
     *high = sample[count - 1 - count / 50];
     return true;

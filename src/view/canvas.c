@@ -1,5 +1,6 @@
 #include "view/canvas.h"
 
+#include "base/compare.h"
 #include "base/memory.h"
 
 #include <assert.h>
@@ -140,11 +141,6 @@ void view_canvas_light(view_canvas *canvas, float grain) {
 
 /* ---- particle size ----------------------------------------------------------------------------------------------- */
 
-static int compare_floats(const void *a, const void *b) {
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 /* The distance to the sixth-nearest neighbour: in a cubic lattice, its spacing. The nearest alone would say nothing
  * about a cloud that is dense in one direction only. */
 static float sixth_neighbour(const float *position, int64_t count, int64_t index) {
@@ -173,6 +169,6 @@ float view_particle_radius(const float *position, int64_t count) {
         if (isfinite(d) && d > 0) distance[found++] = d;
     }
     if (found == 0) return 0;
-    qsort(distance, (size_t)found, sizeof(float), compare_floats);
+    qsort(distance, (size_t)found, sizeof(float), compare_f32);
     return 0.75f * distance[found / 2];
 }

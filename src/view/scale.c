@@ -1,14 +1,11 @@
 #include "view/scale.h"
 
+#include "base/compare.h"
+
 #include <math.h>
 #include <stdlib.h>
 
 enum { SAMPLE = 4096 };
-
-static int compare_floats(const void *a, const void *b) {
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
 
 view_scale view_scale_fit(const float *values, int64_t count) {
     float sample[SAMPLE];
@@ -18,7 +15,7 @@ view_scale view_scale_fit(const float *values, int64_t count) {
         if (isfinite(values[i])) sample[found++] = values[i];
     }
     if (found == 0) return (view_scale){0, 0};
-    qsort(sample, (size_t)found, sizeof *sample, compare_floats);
+    qsort(sample, (size_t)found, sizeof *sample, compare_f32);
     view_scale scale = {sample[found / 200], sample[found - 1 - found / 200]};
     if (scale.high > scale.low) return scale;
     /* Nearly all are alike: what is not decides. */

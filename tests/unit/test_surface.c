@@ -1,17 +1,13 @@
 /* Surfaces of particles: closed, turned outwards, and as large as the body; charts: what is drawn is where the numbers are. */
 #include "check.h"
 
+#include "base/compare.h"
 #include "base/memory.h"
 #include "view/chart.h"
 #include "view/surface.h"
 
 static uint64_t edge_key(int32_t a, int32_t b) {
     return (uint64_t)(uint32_t)a << 32 | (uint32_t)b;
-}
-
-static int compare_keys(const void *a, const void *b) {
-    uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
-    return (x > y) - (x < y);
 }
 
 /* Every directed edge has as many partners the other way round: no hole, and neighbours agree which side is out. */
@@ -23,8 +19,8 @@ static bool is_closed(const view_surface *s) {
         there[i] = edge_key(a, b);
         back[i] = edge_key(b, a);
     }
-    qsort(there, n, sizeof *there, compare_keys);
-    qsort(back, n, sizeof *back, compare_keys);
+    qsort(there, n, sizeof *there, compare_u64);
+    qsort(back, n, sizeof *back, compare_u64);
     for (size_t i = 0; i < n; i++) found += there[i] == back[i];
     free(there);
     free(back);

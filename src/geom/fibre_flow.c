@@ -1,6 +1,7 @@
 /* Directions of a solved flow: by cube, then at the lattice's nodes, then everywhere. */
 #include "geom/fibre_flow.h"
 
+#include "geom/disjoint.h"
 #include "geom/fibre_flow_cells.h"
 #include "geom/vector.h"
 
@@ -74,11 +75,6 @@ typedef struct flow_field {
     uint8_t *touched;      // [unknowns] at roots: bits by side
 } flow_field;
 
-static int32_t root_of(int32_t *parent, int32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-}
-
 /* Finds the pieces of the body that join inflow and outflow; false when there is none. */
 static bool find_pieces(flow_field *f) {
     const flow_cells *c = f->cells;
@@ -86,11 +82,11 @@ static bool find_pieces(flow_field *f) {
     for (int32_t i = 0; i < (int32_t)c->unknown_count; i++) f->piece[i] = i;
     for (int64_t i = 0; i < c->cell_count; i++)
         for (int k = 1; k < 8; k++) {
-            int32_t a = root_of(f->piece, c->cell[i].unknown[0]), b = root_of(f->piece, c->cell[i].unknown[k]);
+            int32_t a = disjoint_root(f->piece, c->cell[i].unknown[0]), b = disjoint_root(f->piece, c->cell[i].unknown[k]);
             f->piece[a > b ? a : b] = a > b ? b : a;
         }
     for (int64_t i = 0; i < c->cell_count; i++) {
-        uint8_t *touched = &f->touched[root_of(f->piece, c->cell[i].unknown[0])];
+        uint8_t *touched = &f->touched[disjoint_root(f->piece, c->cell[i].unknown[0])];
         for (int s = 0; s < FLOW_SIDES; s++)
             if (c->cell[i].touches[s]) *touched |= (uint8_t)(1 << s);
         joined = joined || *touched == 3;
@@ -105,7 +101,7 @@ static void find_gradients(flow_field *f, const double *potential) {
     for (int64_t i = 0; i < c->cell_count; i++) {
         const flow_cell *cell = &c->cell[i];
         double by_corner[8][3];
-        if (f->touched[root_of(f->piece, cell->unknown[0])] != 3) continue;
+        if (f->touched[disjoint_root(f->piece, cell->unknown[0])] != 3) continue;
         flow_gradient(cell->middle, by_corner);
         for (int k = 0; k < 8; k++)
             for (int a = 0; a < 3; a++) f->gradient[i][a] -= potential[cell->unknown[k]] * by_corner[k][a];

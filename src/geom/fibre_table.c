@@ -1,6 +1,7 @@
 /* Directions from a file's rows: a balanced tree over their places, and the nearest of them. */
 #include "geom/fibre_fields.h"
 
+#include "geom/box.h"
 #include "geom/text.h"
 #include "geom/vector.h"
 
@@ -106,13 +107,9 @@ static status read_rows(const char *file, const void *data, size_t size, row_lis
 /* ---- the tree ---------------------------------------------------------------------------------------------------- */
 
 static int widest_axis(const table_row *row, int64_t begin, int64_t end) {
-    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    for (int64_t i = begin; i < end; i++)
-        for (int c = 0; c < 3; c++) low[c] = fmin(low[c], row[i].value[c]), high[c] = fmax(high[c], row[i].value[c]);
-    int widest = 0;
-    for (int c = 1; c < 3; c++)
-        if (high[c] - low[c] > high[widest] - low[widest]) widest = c;
-    return widest;
+    box3 box = box_empty();
+    for (int64_t i = begin; i < end; i++) box_add(&box, row[i].value);
+    return box_widest(&box);
 }
 
 /* Hoare's selection: row[begin … at) is not beyond row[at] along the axis, row(at … end) not before it. */

@@ -3,6 +3,7 @@
 
 #include "base/random.h"
 #include "geom/mesh_build.h"
+#include "geom/text.h"
 #include "geom/vector.h"
 
 #include <ctype.h>
@@ -47,6 +48,17 @@ status mesh_add_vertex(mesh *m, const double x[3], report *r) {
     m->vertex = rows;
     if (code == STATUS_OK) memcpy(m->vertex + 3 * m->vertex_count++, x, 3 * sizeof *x);
     return code;
+}
+
+status mesh_read_vertex(text_reader *t, bool (*next)(text_reader *, text_word *), const char *key, mesh *m, report *r) {
+    double x[3];
+    for (int i = 0; i < 3; i++) {
+        text_word word;
+        bool found = next(t, &word);
+        if (!found || !text_number(&word, &x[i]) || !mesh_coordinate_ok(x[i]))
+            return text_wrong(t, key, "three finite coordinates", found ? &word : NULL, r);
+    }
+    return mesh_add_vertex(m, x, r);
 }
 
 status mesh_add_triangle(mesh *m, int64_t a, int64_t b, int64_t c, report *r) {

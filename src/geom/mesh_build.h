@@ -14,6 +14,11 @@ bool mesh_coordinate_ok(double x);
 
 status mesh_add_vertex(mesh *m, const double x[3], report *r);
 
+/* Reads a vertex's three coordinates, words that `next` finds, and adds it; `key` is what messages call it. */
+struct text_reader;
+struct text_word;
+status mesh_read_vertex(struct text_reader *t, bool (*next)(struct text_reader *, struct text_word *), const char *key, mesh *m, report *r);
+
 /* Corners must be indices that fit an int32_t; whether such vertices exist is the reader's business. */
 status mesh_add_triangle(mesh *m, int64_t a, int64_t b, int64_t c, report *r);
 

@@ -1,6 +1,7 @@
 /* What a mesh is like: edges, holes, pieces, volume; and turning its triangles the same way round. */
 #include "geom/mesh.h"
 
+#include "geom/disjoint.h"
 #include "geom/vector.h"
 
 #include <stdbool.h>
@@ -97,15 +98,9 @@ static void edge_middle(const edge_list *e, const edge *which, double middle[3])
 
 /* ---- counting ---------------------------------------------------------------------------------------------------- */
 
-/* Disjoint sets: parent has shape [count]; a set's root is its own parent. */
-static int32_t root_of(int32_t *parent, int32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-}
-
 /* Whether two sets have become one. */
 static bool join(int32_t *parent, int32_t a, int32_t b) {
-    a = root_of(parent, a), b = root_of(parent, b);
+    a = disjoint_root(parent, a), b = disjoint_root(parent, b);
     parent[a > b ? a : b] = a > b ? b : a;
     return a != b;
 }

@@ -5,6 +5,7 @@
  * never slips between two triangles, and never meets both where they share an edge. */
 #include "geom/mesh_tree.h"
 
+#include "geom/box.h"
 #include "geom/vector.h"
 
 #include <assert.h>
@@ -18,18 +19,13 @@ enum { LISTED_PER_TRIANGLE = 16, COLUMN_LIMIT = 4096 };
 /* ---- building ---------------------------------------------------------------------------------------------------- */
 
 static void set_frame(const mesh *m, mesh_columns *c) {
-    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    for (int64_t v = 0; v < 3 * m->vertex_count; v++) {
-        low[v % 3] = fmin(low[v % 3], m->vertex[v]);
-        high[v % 3] = fmax(high[v % 3], m->vertex[v]);
-    }
-    int shortest = 0;
-    for (int i = 1; i < 3; i++)
-        if (high[i] - low[i] < high[shortest] - low[shortest]) shortest = i;
+    box3 box = box_empty();
+    for (int64_t v = 0; v < m->vertex_count; v++) box_add(&box, m->vertex + 3 * v);
+    int shortest = box_narrowest(&box);
     double extent = 0.0;
     for (int i = 0; i < 3; i++) {
         c->axis[i] = (shortest + 1 + i) % 3;
-        c->low[i] = low[c->axis[i]], c->high[i] = high[c->axis[i]];
+        c->low[i] = box.low[c->axis[i]], c->high[i] = box.high[c->axis[i]];
         extent = fmax(extent, c->high[i] - c->low[i]);
     }
     c->scale = WHOLE / extent;

@@ -5,17 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static status read_vertex(text_reader *t, mesh *m, report *r) {
-    double x[3];
-    for (int i = 0; i < 3; i++) {
-        text_word word;
-        bool found = text_word_on_line(t, &word);
-        if (!found || !text_number(&word, &x[i]) || !mesh_coordinate_ok(x[i]))
-            return text_wrong(t, "v", "three finite coordinates", found ? &word : NULL, r);
-    }
-    return mesh_add_vertex(m, x, r);
-}
-
 /* A corner is "7", "7/1", "7//3" or "7/1/3"; −1 is the last vertex so far. */
 static status read_corner(const text_reader *t, const mesh *m, const text_word *word, int64_t *corner, report *r) {
     const char *slash = memchr(word->text, '/', word->size);
@@ -55,7 +44,7 @@ status mesh_read_obj(const char *file, const void *data, size_t size, mesh *m, r
         text_word word;
         status code = STATUS_OK;
         if (!text_word_on_line(&t, &word)) continue;
-        if (text_is(&word, "v")) code = read_vertex(&t, m, r);
+        if (text_is(&word, "v")) code = mesh_read_vertex(&t, text_word_on_line, "v", m, r);
         else if (text_is(&word, "f")) code = read_face(&t, m, r);
         if (code != STATUS_OK) return code;
     } while (text_next_line(&t));

@@ -61,17 +61,6 @@ static status read_binary(const char *file, const uint8_t *data, size_t size, me
 
 /* ---- text -------------------------------------------------------------------------------------------------------- */
 
-static status read_vertex(text_reader *t, mesh *m, report *r) {
-    double x[3];
-    for (int i = 0; i < 3; i++) {
-        text_word word;
-        bool found = text_next_word(t, &word);
-        if (!found || !text_number(&word, &x[i]) || !mesh_coordinate_ok(x[i]))
-            return text_wrong(t, "vertex", "three finite coordinates", found ? &word : NULL, r);
-    }
-    return mesh_add_vertex(m, x, r);
-}
-
 /* The normal's three words are skipped unread: the order of the corners says the same, and many writers put NaN. */
 static void skip_normal(text_reader *t) {
     text_word word;
@@ -90,7 +79,7 @@ static status read_text(const char *file, const void *data, size_t size, mesh *m
             while (text_word_on_line(&t, &word)) {}
         } else if (text_is(&word, "vertex")) {
             corners++;
-            code = read_vertex(&t, m, r);
+            code = mesh_read_vertex(&t, text_next_word, "vertex", m, r);
         } else if (text_is(&word, "endloop")) {
             code = corners == 3 ? add_three(m, r) : text_wrong(&t, "loop", "three vertices before endloop", &word, r);
             corners = 0;

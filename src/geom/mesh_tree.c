@@ -1,6 +1,7 @@
 /* The nearest triangle by a hierarchy of boxes, four to a branch. */
 #include "geom/mesh_tree.h"
 
+#include "geom/box.h"
 #include "geom/vector.h"
 
 #include <assert.h>
@@ -46,16 +47,9 @@ static int64_t count_branches(int64_t count) {
 }
 
 static int widest_axis(const tree_builder *b, int64_t begin, int64_t end) {
-    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    for (int64_t i = begin; i < end; i++)
-        for (int c = 0; c < 3; c++) {
-            low[c] = fmin(low[c], b->middle[b->order[i]][c]);
-            high[c] = fmax(high[c], b->middle[b->order[i]][c]);
-        }
-    int widest = 0;
-    for (int c = 1; c < 3; c++)
-        if (high[c] - low[c] > high[widest] - low[widest]) widest = c;
-    return widest;
+    box3 box = box_empty();
+    for (int64_t i = begin; i < end; i++) box_add(&box, b->middle[b->order[i]]);
+    return box_widest(&box);
 }
 
 /* Whether triangle p comes before q along an axis: ties by number, so that the order is one. */
@@ -143,14 +137,11 @@ static void set_corners(const tree_builder *b) {
 }
 
 static void set_frame(const mesh *m, mesh_tree *t) {
-    double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-    for (int64_t v = 0; v < 3 * m->vertex_count; v++) {
-        low[v % 3] = fmin(low[v % 3], m->vertex[v]);
-        high[v % 3] = fmax(high[v % 3], m->vertex[v]);
-    }
+    box3 box = box_empty();
+    for (int64_t v = 0; v < m->vertex_count; v++) box_add(&box, m->vertex + 3 * v);
     for (int c = 0; c < 3; c++) {
-        t->center[c] = 0.5 * (low[c] + high[c]);
-        t->half[c] = 0.5 * (high[c] - low[c]);
+        t->center[c] = 0.5 * (box.low[c] + box.high[c]);
+        t->half[c] = 0.5 * (box.high[c] - box.low[c]);
     }
     t->unit = vector_length(t->half);
 }

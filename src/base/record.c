@@ -3,6 +3,7 @@
 #include "base/memory.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -43,6 +44,18 @@ record *record_find(const record_list *list, const char *name) {
     for (int i = 0; i < list->count; i++)
         if (strcmp(list->items[i].name, name) == 0) return (record *)&list->items[i];
     return NULL;
+}
+
+double record_value(const record *item, int64_t i) {
+    switch (item->type) {
+    case RECORD_F32: return ((const float *)item->data)[i];
+    case RECORD_F64: return ((const double *)item->data)[i];
+    case RECORD_I32: return ((const int32_t *)item->data)[i];
+    case RECORD_I64: return (double)((const int64_t *)item->data)[i];
+    case RECORD_U8: return ((const uint8_t *)item->data)[i];
+    case RECORD_U64: return (double)((const uint64_t *)item->data)[i];
+    }
+    return NAN;
 }
 
 status record_require(const record_list *list, const char *name, record_type type, int64_t count, int components,

@@ -37,6 +37,9 @@ status record_add(record_list *list, const char *name, record_type type, int64_t
 /* The record called `name`, or NULL. */
 record *record_find(const record_list *list, const char *name);
 
+/* Element i of a record, whatever its type. */
+double record_value(const record *item, int64_t i);
+
 /* As record_find, but requires type, count and components to match; names what is wrong otherwise. */
 status record_require(const record_list *list, const char *name, record_type type, int64_t count, int components,
                       void **data, report *r);

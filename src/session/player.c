@@ -1,9 +1,10 @@
 #include "session/player.h"
 
-#include "base/eigen.h"
 #include "base/memory.h"
 #include "base/names.h"
 #include "base/record.h"
+#include "geom/vector.h"
+#include "sim/derived.h"
 #include "store/frames.h"
 
 #include <math.h>
@@ -81,48 +82,16 @@ static status unknown_field(const frame_player *p, const char *name, report *r) 
     return report_input(r, p->folder, 0, "field", "a quantity of this run's particles", name, name_nearest(name, names, p->field_count));
 }
 
-/* Element i of a record of reals or integers. */
-static double element(const record *item, int64_t i) {
-    switch (item->type) {
-    case RECORD_F32: return ((const float *)item->data)[i];
-    case RECORD_F64: return ((const double *)item->data)[i];
-    case RECORD_I32: return ((const int32_t *)item->data)[i];
-    case RECORD_I64: return (double)((const int64_t *)item->data)[i];
-    case RECORD_U8: return ((const uint8_t *)item->data)[i];
-    case RECORD_U64: return (double)((const uint64_t *)item->data)[i];
-    }
-    return NAN;
-}
-
-static double length_of(const double v[3]) {
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
-/* The largest singular value of F: the root of the largest eigenvalue of Fᵀ F. */
-static double largest_stretch(const double f[9]) {
-    double c[9], value[3], vector[3][3];
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) c[3 * i + j] = f[i] * f[j] + f[3 + i] * f[3 + j] + f[6 + i] * f[6 + j];
-    eigen_symmetric(c, value, vector);
-    return sqrt(fmax(value[0], 0));
-}
-
-static double stretch_along(const double f[9], const double a[3]) {
-    double b[3];
-    for (int i = 0; i < 3; i++) b[i] = f[3 * i] * a[0] + f[3 * i + 1] * a[1] + f[3 * i + 2] * a[2];
-    return length_of(b);
-}
-
 /* A quantity of particle i from the arrays that it is made of. */
 static double quantity(const char *field, const record *const sources[2], int64_t i) {
     double v[9], a[3];
     int components = sources[0]->components;
-    for (int c = 0; c < components && c < 9; c++) v[c] = element(sources[0], components * i + c);
-    if (strcmp(field, "speed") == 0) return length_of(v);
-    if (strcmp(field, "stretch") == 0) return largest_stretch(v);
+    for (int c = 0; c < components && c < 9; c++) v[c] = record_value(sources[0], components * i + c);
+    if (strcmp(field, "speed") == 0) return vector_length(v);
+    if (strcmp(field, "stretch") == 0) return derived_stretch(v);
     if (strcmp(field, "fibre_stretch") != 0) return v[0];
-    for (int c = 0; c < 3; c++) a[c] = element(sources[1], 3 * i + c);
-    return stretch_along(v, a);
+    for (int c = 0; c < 3; c++) a[c] = record_value(sources[1], 3 * i + c);
+    return derived_fibre_stretch(v, a);
 }
 
 /* The arrays that a quantity is made of; how many. */
@@ -208,8 +177,8 @@ static status fill_place(const frame_player *p, const record_list *records, slot
     s->body = memory_allocate_array(n, sizeof *s->body);
     if (!s->position || !s->body) return report_set(r, STATUS_SYSTEM, "out of memory for a frame of %zu particles", n);
     for (int64_t set = 0, at = 0; set < p->set_count; at += position[set++]->count) {
-        for (int64_t i = 0; i < 3 * position[set]->count; i++) s->position[3 * at + i] = (float)element(position[set], i);
-        for (int64_t i = 0; i < position[set]->count; i++) s->body[at + i] = (int32_t)element(body[set], i);
+        for (int64_t i = 0; i < 3 * position[set]->count; i++) s->position[3 * at + i] = (float)record_value(position[set], i);
+        for (int64_t i = 0; i < position[set]->count; i++) s->body[at + i] = (int32_t)record_value(body[set], i);
     }
     return STATUS_OK;
 }

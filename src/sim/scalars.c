@@ -2,6 +2,8 @@
 #include "base/eigen.h"
 #include "base/memory.h"
 #include "base/names.h"
+#include "geom/vector.h"
+#include "sim/derived.h"
 #include "sim/internal.h"
 
 #include <math.h>
@@ -22,17 +24,13 @@ typedef struct derived {
     derive *from;
 } derived;
 
-static double length_of(const double v[3]) {
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 static double determinant_of(const double F[9]) {
     return F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
 }
 
 static void derive_speed(const simulation *s, const double *v, const double *none, int64_t count, double *out) {
     (void)s, (void)none;
-    for (int64_t i = 0; i < count; i++) out[i] = length_of(v + 3 * i);
+    for (int64_t i = 0; i < count; i++) out[i] = vector_length(v + 3 * i);
 }
 
 static void derive_displacement(const simulation *s, const double *x, const double *none, int64_t count, double *out) {
@@ -40,7 +38,7 @@ static void derive_displacement(const simulation *s, const double *x, const doub
     int64_t solids = engine_count(s, ENGINE_SOLID);
     for (int64_t i = 0; i < count; i++) {
         const double *rest = i < solids ? s->particles.position + 3 * i : s->sheet_points.rest + 3 * (i - solids);
-        out[i] = length_of((double[3]){x[3 * i] - rest[0], x[3 * i + 1] - rest[1], x[3 * i + 2] - rest[2]});
+        out[i] = vector_length((double[3]){x[3 * i] - rest[0], x[3 * i + 1] - rest[1], x[3 * i + 2] - rest[2]});
     }
 }
 
@@ -50,17 +48,17 @@ static void derive_body(const simulation *s, const double *none, const double *n
     for (int64_t i = 0; i < count; i++) out[i] = body[i];
 }
 
-/* The largest singular value of F. */
+double derived_stretch(const double F[9]) {
+    double b[9], value[3], vector[3][3];
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) b[3 * r + c] = vector_dot(F + 3 * r, F + 3 * c);
+    eigen_symmetric(b, value, vector); /* of F Fᵀ */
+    return sqrt(fmax(value[0], 0));
+}
+
 static void derive_stretch(const simulation *s, const double *F, const double *none, int64_t count, double *out) {
     (void)s, (void)none;
-    for (int64_t i = 0; i < count; i++) {
-        const double *f = F + 9 * i;
-        double b[9], value[3], vector[3][3];
-        for (int r = 0; r < 3; r++)
-            for (int c = 0; c < 3; c++) b[3 * r + c] = f[3 * r] * f[3 * c] + f[3 * r + 1] * f[3 * c + 1] + f[3 * r + 2] * f[3 * c + 2];
-        eigen_symmetric(b, value, vector);
-        out[i] = sqrt(fmax(value[0], 0));
-    }
+    for (int64_t i = 0; i < count; i++) out[i] = derived_stretch(F + 9 * i);
 }
 
 static void derive_determinant(const simulation *s, const double *F, const double *none, int64_t count, double *out) {
@@ -79,15 +77,15 @@ static void derive_stress(const simulation *s, const double *tau, const double *
     }
 }
 
+double derived_fibre_stretch(const double F[9], const double a[3]) {
+    double along[3];
+    for (int r = 0; r < 3; r++) along[r] = vector_dot(F + 3 * r, a);
+    return vector_dot(a, a) > 0 ? vector_length(along) : 1;
+}
+
 static void derive_fibre_stretch(const simulation *s, const double *F, const double *fibre, int64_t count, double *out) {
     (void)s;
-    for (int64_t i = 0; i < count; i++) {
-        const double *f = F + 9 * i, *a = fibre + 3 * i;
-        bool has_one = a[0] != 0 || a[1] != 0 || a[2] != 0;
-        double along[3];
-        for (int r = 0; r < 3; r++) along[r] = f[3 * r] * a[0] + f[3 * r + 1] * a[1] + f[3 * r + 2] * a[2];
-        out[i] = has_one ? length_of(along) : 1;
-    }
+    for (int64_t i = 0; i < count; i++) out[i] = derived_fibre_stretch(F + 9 * i, fibre + 3 * i);
 }
 
 static const derived derivations[] = {

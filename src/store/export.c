@@ -1,9 +1,10 @@
 #include "store/export_internal.h"
 
+#include "base/names.h"
 #include "store/files.h"
 
+#include <assert.h>
 #include <inttypes.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,16 +22,20 @@ status export_end(export_file *f, status outcome, report *r) {
     return outcome;
 }
 
-double export_element(const record *item, int64_t i) {
-    switch (item->type) {
-    case RECORD_F32: return ((const float *)item->data)[i];
-    case RECORD_F64: return ((const double *)item->data)[i];
-    case RECORD_I32: return ((const int32_t *)item->data)[i];
-    case RECORD_I64: return (double)((const int64_t *)item->data)[i];
-    case RECORD_U8: return ((const uint8_t *)item->data)[i];
-    case RECORD_U64: return (double)((const uint64_t *)item->data)[i];
+status export_write(const char *path, const export_format *formats, int count, const char *expected, const void *thing, report *r) {
+    enum { MOST = 8 };
+    const char *names[MOST], *suffix = export_suffix(path);
+    assert(count <= MOST);
+    for (int i = 0; i < count; i++) {
+        names[i] = formats[i].suffix;
+        if (strcmp(suffix, formats[i].suffix) != 0) continue;
+        export_file f;
+        status code = export_begin(&f, path, r);
+        if (code != STATUS_OK) return code;
+        formats[i].write(f.out, thing);
+        return export_end(&f, STATUS_OK, r);
     }
-    return NAN;
+    return report_input(r, path, 0, "suffix", expected, *suffix ? suffix : "none", name_nearest(suffix, names, count));
 }
 
 const record *export_positions(const record_list *records, const char *set) {

@@ -15,9 +15,6 @@ typedef struct export_file {
 status export_begin(export_file *f, const char *path, report *r);
 status export_end(export_file *f, status outcome, report *r);
 
-/* Element i of a record, whatever its type. */
-double export_element(const record *item, int64_t i);
-
 /* The index-th record of the set that has a row a particle, positions and ids left out: NULL after the last. */
 const record *export_field(const record_list *records, const char *set, int index);
 const record *export_positions(const record_list *records, const char *set);
@@ -27,6 +24,15 @@ const char *export_short_name(const record *item);
 
 /* Suffix of a path, "" for none. */
 const char *export_suffix(const char *path);
+
+/* A format of files by its suffix: how a thing (points, a mesh) is written in it. */
+typedef struct export_format {
+    const char *suffix;
+    void (*write)(FILE *out, const void *thing);
+} export_format;
+
+/* Writes the file whole in the format of its path's suffix. Errors: another suffix (`expected` names those there are); the disk's, memory. */
+status export_write(const char *path, const export_format *formats, int count, const char *expected, const void *thing, report *r);
 
 /* Little-endian whatever the machine. */
 void export_put_f32(FILE *out, double value);

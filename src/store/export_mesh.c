@@ -1,13 +1,11 @@
 /* Triangle meshes as PLY, OBJ and STL. */
 #include "store/export_internal.h"
 
-#include "base/names.h"
-
 #include <inttypes.h>
 #include <math.h>
-#include <string.h>
 
-static void write_ply(FILE *out, const export_mesh *m) {
+static void write_ply(FILE *out, const void *mesh) {
+    const export_mesh *m = mesh;
     fprintf(out, "ply\nformat binary_little_endian 1.0\ncomment sunder\nelement vertex %" PRId64 "\nproperty float x\nproperty float y\nproperty float z\n", m->vertex_count);
     if (m->value) fprintf(out, "property float %s\n", m->value_name);
     fprintf(out, "element face %" PRId64 "\nproperty list uchar int vertex_indices\nend_header\n", m->triangle_count);
@@ -21,7 +19,8 @@ static void write_ply(FILE *out, const export_mesh *m) {
     }
 }
 
-static void write_obj(FILE *out, const export_mesh *m) {
+static void write_obj(FILE *out, const void *mesh) {
+    const export_mesh *m = mesh;
     fprintf(out, "# sunder: %" PRId64 " vertices, %" PRId64 " triangles\n", m->vertex_count, m->triangle_count);
     for (int64_t i = 0; i < m->vertex_count; i++) {
         const float *x = m->vertex + 3 * i;
@@ -46,29 +45,16 @@ static void write_facet(FILE *out, const export_mesh *m, const int32_t t[3]) {
     fputc(0, out);
 }
 
-static void write_stl(FILE *out, const export_mesh *m) {
+static void write_stl(FILE *out, const void *mesh) {
+    const export_mesh *m = mesh;
     char header[80] = "sunder surface";
     fwrite(header, 1, sizeof header, out);
     export_put_i32(out, m->triangle_count);
     for (int64_t i = 0; i < m->triangle_count; i++) write_facet(out, m, m->triangle + 3 * i);
 }
 
-static const struct {
-    const char *suffix;
-    void (*write)(FILE *out, const export_mesh *m);
-} formats[] = {{".ply", write_ply}, {".obj", write_obj}, {".stl", write_stl}};
+static const export_format formats[] = {{".ply", write_ply}, {".obj", write_obj}, {".stl", write_stl}};
 
 status export_mesh_write(const char *path, const export_mesh *mesh, report *r) {
-    enum { FORMATS = sizeof formats / sizeof *formats };
-    const char *names[FORMATS], *suffix = export_suffix(path);
-    for (int i = 0; i < FORMATS; i++) {
-        names[i] = formats[i].suffix;
-        if (strcmp(suffix, formats[i].suffix) != 0) continue;
-        export_file f;
-        status code = export_begin(&f, path, r);
-        if (code != STATUS_OK) return code;
-        formats[i].write(f.out, mesh);
-        return export_end(&f, STATUS_OK, r);
-    }
-    return report_input(r, path, 0, "suffix", ".ply, .obj or .stl", *suffix ? suffix : "none", name_nearest(suffix, names, FORMATS));
+    return export_write(path, formats, sizeof formats / sizeof *formats, ".ply, .obj or .stl", mesh, r);
 }

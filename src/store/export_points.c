@@ -2,10 +2,8 @@
 #include "store/export_internal.h"
 
 #include "base/json.h"
-#include "base/names.h"
 
 #include <inttypes.h>
-#include <string.h>
 
 static bool is_whole(const record *item) {
     return item->type != RECORD_F32 && item->type != RECORD_F64;
@@ -35,14 +33,15 @@ static void write_ply_header(FILE *out, const export_points *p, int64_t count) {
     fputs("end_header\n", out);
 }
 
-static void write_ply(FILE *out, const export_points *p) {
+static void write_ply(FILE *out, const void *points) {
+    const export_points *p = points;
     const record *position = export_positions(p->records, p->set), *item;
     write_ply_header(out, p, position->count);
     for (int64_t i = 0; i < position->count; i++) {
-        for (int c = 0; c < 3; c++) export_put_f32(out, export_element(position, 3 * i + c));
+        for (int c = 0; c < 3; c++) export_put_f32(out, record_value(position, 3 * i + c));
         for (int k = 0; (item = export_field(p->records, p->set, k)); k++)
             for (int c = 0; c < item->components; c++) {
-                double value = export_element(item, item->components * i + c);
+                double value = record_value(item, item->components * i + c);
                 if (is_whole(item)) export_put_i32(out, (int64_t)value);
                 else export_put_f32(out, value);
             }
@@ -51,16 +50,18 @@ static void write_ply(FILE *out, const export_points *p) {
 
 /* ---- OBJ, CSV ---------------------------------------------------------------------------------------------------- */
 
-static void write_obj(FILE *out, const export_points *p) {
+static void write_obj(FILE *out, const void *points) {
+    const export_points *p = points;
     const record *position = export_positions(p->records, p->set);
     fprintf(out, "# sunder frame %" PRId64 " time %.9g: %" PRId64 " points\n", p->frame, p->time, position->count);
     for (int64_t i = 0; i < position->count; i++)
-        fprintf(out, "v %.9g %.9g %.9g\n", export_element(position, 3 * i), export_element(position, 3 * i + 1), export_element(position, 3 * i + 2));
+        fprintf(out, "v %.9g %.9g %.9g\n", record_value(position, 3 * i), record_value(position, 3 * i + 1), record_value(position, 3 * i + 2));
     /* Points that no element names are dropped by some readers. */
     for (int64_t i = 0; i < position->count; i++) fprintf(out, "p %" PRId64 "\n", i + 1);
 }
 
-static void write_csv(FILE *out, const export_points *p) {
+static void write_csv(FILE *out, const void *points) {
+    const export_points *p = points;
     const record *position = export_positions(p->records, p->set), *item;
     fputs("x,y,z", out);
     for (int k = 0; (item = export_field(p->records, p->set, k)); k++)
@@ -71,9 +72,9 @@ static void write_csv(FILE *out, const export_points *p) {
         }
     fputc('\n', out);
     for (int64_t i = 0; i < position->count; i++) {
-        for (int c = 0; c < 3; c++) fprintf(out, "%s%.9g", c ? "," : "", export_element(position, 3 * i + c));
+        for (int c = 0; c < 3; c++) fprintf(out, "%s%.9g", c ? "," : "", record_value(position, 3 * i + c));
         for (int k = 0; (item = export_field(p->records, p->set, k)); k++)
-            for (int c = 0; c < item->components; c++) fprintf(out, ",%.9g", export_element(item, item->components * i + c));
+            for (int c = 0; c < item->components; c++) fprintf(out, ",%.9g", record_value(item, item->components * i + c));
         fputc('\n', out);
     }
 }
@@ -90,8 +91,8 @@ static void append_array(FILE *out, const record *item) {
     int64_t values = item->count * item->components;
     export_put_i32(out, 4 * values);
     for (int64_t i = 0; i < values; i++) {
-        if (is_whole(item)) export_put_i32(out, (int64_t)export_element(item, i));
-        else export_put_f32(out, export_element(item, i));
+        if (is_whole(item)) export_put_i32(out, (int64_t)record_value(item, i));
+        else export_put_f32(out, record_value(item, i));
     }
 }
 
@@ -100,7 +101,8 @@ static void append_numbers(FILE *out, int64_t count, int64_t first) {
     for (int64_t i = 0; i < count; i++) export_put_i32(out, first + i);
 }
 
-static void write_vtp(FILE *out, const export_points *p) {
+static void write_vtp(FILE *out, const void *points) {
+    const export_points *p = points;
     const record *position = export_positions(p->records, p->set), *item;
     int64_t n = position->count, offset = 0;
     fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PolyData>\n", out);
@@ -136,22 +138,8 @@ status export_pvd_write(const char *path, const char *const *names, const double
 
 /* ---- the choice -------------------------------------------------------------------------------------------------- */
 
-static const struct {
-    const char *suffix;
-    void (*write)(FILE *out, const export_points *p);
-} formats[] = {{".ply", write_ply}, {".obj", write_obj}, {".vtp", write_vtp}, {".csv", write_csv}};
+static const export_format formats[] = {{".ply", write_ply}, {".obj", write_obj}, {".vtp", write_vtp}, {".csv", write_csv}};
 
 status export_points_write(const char *path, const export_points *points, report *r) {
-    enum { FORMATS = sizeof formats / sizeof *formats };
-    const char *names[FORMATS], *suffix = export_suffix(path);
-    for (int i = 0; i < FORMATS; i++) {
-        names[i] = formats[i].suffix;
-        if (strcmp(suffix, formats[i].suffix) != 0) continue;
-        export_file f;
-        status code = export_begin(&f, path, r);
-        if (code != STATUS_OK) return code;
-        formats[i].write(f.out, points);
-        return export_end(&f, STATUS_OK, r);
-    }
-    return report_input(r, path, 0, "suffix", ".ply, .obj, .vtp or .csv", *suffix ? suffix : "none", name_nearest(suffix, names, FORMATS));
+    return export_write(path, formats, sizeof formats / sizeof *formats, ".ply, .obj, .vtp or .csv", points, r);
 }

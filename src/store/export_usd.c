@@ -25,9 +25,9 @@ static void write_values(FILE *out, const record *item) {
     for (int64_t i = 0; i < item->count; i++) {
         const char *comma = i ? ", " : "";
         if (vector)
-            fprintf(out, "%s(%.7g, %.7g, %.7g)", comma, export_element(item, 3 * i), export_element(item, 3 * i + 1), export_element(item, 3 * i + 2));
+            fprintf(out, "%s(%.7g, %.7g, %.7g)", comma, record_value(item, 3 * i), record_value(item, 3 * i + 1), record_value(item, 3 * i + 2));
         else
-            fprintf(out, "%s%.7g", comma, export_element(item, i));
+            fprintf(out, "%s%.7g", comma, record_value(item, i));
     }
     fputc(']', out);
 }

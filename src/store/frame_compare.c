@@ -1,7 +1,6 @@
 #include "store/frame_compare.h"
 
 #include "base/memory.h"
-#include "store/export_internal.h"
 #include "store/frames.h"
 
 #include <math.h>
@@ -19,7 +18,7 @@ static bool same_bytes(const record *a, const record *b) {
 static double largest_difference(const record *a, const record *b) {
     double most = 0;
     if (!same_shape(a, b)) return NAN;
-    for (int64_t i = 0; i < a->count * a->components; i++) most = fmax(most, fabs(export_element(a, i) - export_element(b, i)));
+    for (int64_t i = 0; i < a->count * a->components; i++) most = fmax(most, fabs(record_value(a, i) - record_value(b, i)));
     return most;
 }
 

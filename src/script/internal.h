@@ -115,6 +115,9 @@ script *script_of(lua_State *L);
 script *script_create(const script_options *options, script_reports *reports);
 /* Calls a function with one pointer under the script's limits; what goes wrong is recorded. */
 void script_run_protected(script *s, lua_CFunction call, void *request);
+/* Loads a Lua file that is no scene: runs it, then `read` with what it returned on top of the stack. `path`: as given; `file`: as people write it. */
+typedef void script_reader(lua_State *L, const char *path, const char *file, void *out);
+status script_load_file(const char *path, script_reader *read, void *out, script_reports *reports);
 
 /* ---- errors.c ---- */
 void throw_report(lua_State *L, const report *r) __attribute__((noreturn));
@@ -311,7 +314,7 @@ void read_expect(script *s, int index, const place *p);
 /* ---- sweep.c ---- */
 /* Reads the table that a sweep's file returned (top of the stack); `path` is where the file is, from the working folder. */
 struct sweep;
-void read_sweep(lua_State *L, const char *path, const char *file, struct sweep *out);
+script_reader read_sweep;
 
 /* ---- settings.c ---- */
 /* Applies what s.params did not take: scene keys and knobs. Unknown keys are recorded. */

@@ -15,14 +15,21 @@ typedef struct load_request {
     const script_options *options;
 } load_request;
 
+/* Leaves the function of a file's chunk on the stack. */
+static const source_file *push_chunk(lua_State *L, const char *path) {
+    scene *sc = script_of(L)->scene;
+    luaL_checkstack(L, 4 * API_STACK, "loading"); /* reading nests deep, and all of it in this one frame */
+    sandbox_open(L);
+    const source_file *file = load_scene_file(L, path);
+    snprintf(sc->file, sizeof sc->file, "%s", file->display);
+    return file;
+}
+
 /* Everything that runs Lua or reads its values; in protected mode. */
 static int load_protected(lua_State *L) {
     const load_request *q = lua_touserdata(L, 1);
     script *s = script_of(L);
-    luaL_checkstack(L, 4 * API_STACK, "loading"); /* reading nests deep, and all of it in this one frame */
-    sandbox_open(L);
-    const source_file *file = load_scene_file(L, q->path);
-    snprintf(s->scene->file, sizeof s->scene->file, "%s", file->display);
+    const source_file *file = push_chunk(L, q->path);
     overrides_prepare(L, q->options);
     lua_call(L, 0, 1);
     read_scene(L, file->display);
@@ -144,23 +151,21 @@ status script_load(const char *path, const script_options *options, script **out
     return reports->items[0].code;
 }
 
-typedef struct sweep_request {
+typedef struct file_request {
     const char *path;
-    sweep *out;
-} sweep_request;
+    script_reader *read;
+    void *out;
+} file_request;
 
-static int load_sweep_protected(lua_State *L) {
-    const sweep_request *q = lua_touserdata(L, 1);
-    luaL_checkstack(L, 4 * API_STACK, "loading");
-    sandbox_open(L);
-    const source_file *file = load_scene_file(L, q->path);
-    snprintf(script_of(L)->scene->file, sizeof script_of(L)->scene->file, "%s", file->display);
+static int load_file_protected(lua_State *L) {
+    const file_request *q = lua_touserdata(L, 1);
+    const source_file *file = push_chunk(L, q->path);
     lua_call(L, 0, 1);
-    read_sweep(L, q->path, file->display, q->out);
+    q->read(L, q->path, file->display, q->out);
     return 0;
 }
 
-status sweep_load(const char *path, sweep *out, script_reports *reports) {
+status script_load_file(const char *path, script_reader *read, void *out, script_reports *reports) {
     script_options options = script_options_default();
     reports->count = 0;
     script *s = script_create(&options, reports);
@@ -168,13 +173,16 @@ status sweep_load(const char *path, sweep *out, script_reports *reports) {
         reports->count = 1;
         return report_set(&reports->items[0], STATUS_SYSTEM, "out of memory while %s was loaded", path);
     }
-    sweep_request q = {path, out};
-    script_run_protected(s, load_sweep_protected, &q);
+    script_run_protected(s, load_file_protected, &(file_request){path, read, out});
     s->reports = NULL;
     bool fine = s->problem_count == 0;
     if (!fine) sort_reports(s, reports);
     script_close(s);
     return fine ? STATUS_OK : reports->items[0].code;
+}
+
+status sweep_load(const char *path, sweep *out, script_reports *reports) {
+    return script_load_file(path, read_sweep, out, reports);
 }
 
 scene *script_scene(script *s) {

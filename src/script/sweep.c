@@ -105,7 +105,8 @@ static void place_scene(const char *file, const char *name, char out[SWEEP_PATH]
     else snprintf(out, SWEEP_PATH, "%.*s/%s", (int)(slash - file), file, name);
 }
 
-void read_sweep(lua_State *L, const char *path, const char *file, sweep *out) {
+void read_sweep(lua_State *L, const char *path, const char *file, void *to) {
+    sweep *out = to;
     script *s = script_of(L);
     int table = lua_gettop(L);
     char found[80];

@@ -87,14 +87,16 @@ static void read_colours(script *s, const place *p, int index, user_config *out)
     lua_pop(s->L, 1);
 }
 
-static void read_config(script *s, const char *file, user_config *out) {
+static void read_config(lua_State *L, const char *path, const char *file, void *to) {
+    (void)path;
+    script *s = script_of(L);
+    user_config *out = to;
     place p = {.file = file};
     double ascii = 0, mouse = 0;
     field fields[] = {{.key = "theme", .kind = FIELD_TEXT, .text = out->theme}, {.key = "map", .kind = FIELD_TEXT, .text = out->map},
                       {.key = "mode", .kind = FIELD_TEXT, .text = out->mode},   {.key = "ascii", .kind = FIELD_FLAG, .number = &ascii},
                       {.key = "mouse", .kind = FIELD_FLAG, .number = &mouse},   {.key = "colours", .kind = FIELD_OTHER},
                       {.key = "keys", .kind = FIELD_OTHER},                     {.key = "styles", .kind = FIELD_OTHER}};
-    lua_State *L = s->L;
     int table = lua_gettop(L);
     if (!read_table(s, table, &p, "a table: return { theme = \"light\", keys = { … } }")) return;
     (void)read_fields(s, table, &p, fields, (int)(sizeof fields / sizeof *fields));
@@ -109,37 +111,10 @@ static void read_config(script *s, const char *file, user_config *out) {
     if (fields[7].given) read_names(s, table, &p, "styles", USER_STYLES, out, read_style);
 }
 
-typedef struct config_request {
-    const char *path;
-    user_config *out;
-} config_request;
-
-static int load_config(lua_State *L) {
-    const config_request *q = lua_touserdata(L, 1);
-    luaL_checkstack(L, 4 * API_STACK, "loading");
-    sandbox_open(L);
-    const source_file *file = load_scene_file(L, q->path);
-    snprintf(script_of(L)->scene->file, sizeof script_of(L)->scene->file, "%s", file->display);
-    lua_call(L, 0, 1);
-    read_config(script_of(L), file->display, q->out);
-    return 0;
-}
-
 status user_config_load(const char *path, user_config *out, script_reports *reports) {
-    script_options options = script_options_default();
     reports->count = 0;
     *out = (user_config){.colours = -1, .ascii = -1, .mouse = -1};
     if (access(path, F_OK) != 0) return STATUS_OK;
     snprintf(out->file, sizeof out->file, "%s", path);
-    script *s = script_create(&options, reports);
-    if (!s) {
-        reports->count = 1;
-        return report_set(&reports->items[0], STATUS_SYSTEM, "out of memory while %s was loaded", path);
-    }
-    config_request q = {path, out};
-    script_run_protected(s, load_config, &q);
-    s->reports = NULL;
-    bool fine = s->problem_count == 0;
-    script_close(s);
-    return fine ? STATUS_OK : reports->items[0].code;
+    return script_load_file(path, read_config, out, reports);
 }

@@ -42,32 +42,32 @@ static status allocate(body_particles *p, bool fibre1, bool fibre2, bool notched
     return report_set(r, STATUS_SYSTEM, "out of memory for %lld particles", (long long)n);
 }
 
-void bodies_free_given(body_particles *p) {
+static void free_given(body_particles *p) {
     for (int g = 0; g < p->given_count; g++) memory_free(p->given[g], p->given[g] ? (size_t)p->count * sizeof(double) : 0);
     p->given_count = 0;
 }
 
-void bodies_free(body_particles *p) {
+void bodies_free_loading(body_particles *p) {
     size_t n = (size_t)p->count, owners = p->element_count ? (size_t)p->element_count : n, row_bytes = 3 * sizeof(double) * n;
-    memory_free(p->position, row_bytes);
     memory_free(p->velocity, row_bytes);
     memory_free(p->start, row_bytes);
     memory_free(p->volume, n * sizeof(double));
     memory_free(p->material, owners);
-    memory_free(p->body, n);
     memory_free(p->fibre1, 3 * sizeof(double) * owners);
     memory_free(p->fibre2, 3 * sizeof(double) * owners);
-    memory_free(p->corner, 4 * sizeof(int32_t) * (size_t)p->element_count);
-    memory_free(p->damage, n * sizeof(double));
-    bodies_free_given(p);
-    memset(p, 0, sizeof *p);
+    p->velocity = p->start = p->volume = p->fibre1 = p->fibre2 = NULL;
+    p->material = NULL;
+    free_given(p);
 }
 
-/* True when a grip that protects holds the place at the start. */
-static bool is_protected(const scene *s, const double x[3]) {
-    for (int g = 0; g < s->grip_count; g++)
-        if (s->grips[g].protects && shape_distance(s->grips[g].shape, x) < 0) return true;
-    return false;
+void bodies_free(body_particles *p) {
+    size_t n = (size_t)p->count;
+    bodies_free_loading(p);
+    memory_free(p->position, 3 * sizeof(double) * n);
+    memory_free(p->body, n);
+    memory_free(p->corner, 4 * sizeof(int32_t) * (size_t)p->element_count);
+    memory_free(p->damage, n * sizeof(double));
+    memset(p, 0, sizeof *p);
 }
 
 status bodies_set_fibres(const scene *s, const scene_body *b, const double x[3], body_particles *p, int64_t i, report *r) {
@@ -106,7 +106,7 @@ static status fill_body(const scene *s, int body, const point_set *points, doubl
         memcpy(p->position + 3 * i, points->position + 3 * k, 3 * sizeof(double));
         p->volume[i] = volume / (double)points->count;
         p->body[i] = (uint8_t)body;
-        p->material[i] = (uint8_t)(b->material + (is_protected(s, p->position + 3 * i) ? s->material_count : 0));
+        p->material[i] = (uint8_t)(b->material + (scene_protects(s, p->position + 3 * i) ? s->material_count : 0));
         if (b->velocity.outputs) code = scene_function_evaluate(&b->velocity, p->position + 3 * i, 3, p->velocity + 3 * i, r);
         if (code == STATUS_OK && p->fibre1) code = bodies_set_fibres(s, b, p->position + 3 * i, p, i, r);
     }

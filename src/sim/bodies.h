@@ -29,8 +29,8 @@ status bodies_set_fibres(const scene *s, const scene_body *b, const double x[3],
 /* Fills the bodies with tetrahedra of the edge out->spacing (tetra_bodies.c). Errors as bodies_sample. */
 status tetra_bodies_fill(const scene *s, body_particles *out, report *r);
 
-/* Gives back what scales parameters; the engine has its copy. */
-void bodies_free_given(body_particles *p);
+/* Frees what only an engine needs, once it has copied it: rest positions, bodies and notches stay for the measures. */
+void bodies_free_loading(body_particles *p);
 
 /* Samples everything. Errors: a parameter that varies out of its range (with the place), a body without volume or particles, a fibre direction that is zero (with the place), notches
  * that hold no particle, memory. */

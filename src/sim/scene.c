@@ -79,6 +79,12 @@ int64_t scene_frames(const scene *s) {
     return (int64_t)llround(s->duration * s->fps);
 }
 
+bool scene_protects(const scene *s, const double x[3]) {
+    for (int g = 0; g < s->grip_count; g++)
+        if (s->grips[g].protects && shape_distance(s->grips[g].shape, x) < 0) return true;
+    return false;
+}
+
 /* The first effect from index `from` on that a material names and that answers a need; -1. */
 static int find_supplier(const scene_material *m, const char *need, int from) {
     int count;

@@ -182,6 +182,9 @@ bool scene_is_tetrahedra(const scene *s);
 /* The number of frames after the initial one: duration × fps, rounded. */
 int64_t scene_frames(const scene *s);
 
+/* Whether a grip that protects holds the place x at the start. */
+bool scene_protects(const scene *s, const double x[3]);
+
 /* All effects of both engines, the solid engine's first, metadata only (the tables' stages are those of the plain f64 build).
  * Effects of the scene itself, gravity and boundaries, stand once, among the solid engine's, and hold for both. */
 const effect *const *effect_catalogue(int *count);

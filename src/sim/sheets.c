@@ -62,12 +62,6 @@ void sheets_free(sheet_particles *p) {
 
 /* ---- particles --------------------------------------------------------------------------------------------------- */
 
-static bool is_protected(const scene *s, const double x[3]) {
-    for (int g = 0; g < s->grip_count; g++)
-        if (s->grips[g].protects && shape_distance(s->grips[g].shape, x) < 0) return true;
-    return false;
-}
-
 /* The grain in the sheet's plane, of unit length. */
 static status set_grain(const scene *s, const scene_sheet *b, sheet_particles *p, int64_t i, report *r) {
     double direction[6] = {1, 0, 0};
@@ -95,7 +89,7 @@ static status fill_sheet(const scene *s, int number, const point_set *points, do
         for (int c = 0; c < 3; c++) p->position[3 * i + c] += lift * b->region.normal[c];
         p->area[i] = area;
         p->sheet[i] = (uint8_t)number;
-        p->protected[i] = is_protected(s, p->rest + 3 * i);
+        p->protected[i] = scene_protects(s, p->rest + 3 * i);
         if (b->velocity.outputs) code = scene_function_evaluate(&b->velocity, p->rest + 3 * i, 3, p->velocity + 3 * i, r);
         if (code == STATUS_OK && p->grain) code = set_grain(s, b, p, i, r);
     }

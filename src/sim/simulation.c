@@ -89,20 +89,6 @@ static void make_plan(simulation *s, uint32_t mask, int threads) {
     p->dt = s->frame_time / ceil(s->frame_time / wanted - 1e-9);
 }
 
-/* The engine has copied what it needs; rest positions, bodies and notches stay for the measures. */
-static void drop_loading_arrays(body_particles *p) {
-    size_t n = (size_t)p->count, owners = p->element_count ? (size_t)p->element_count : n, row_bytes = 3 * sizeof(double) * n;
-    memory_free(p->velocity, row_bytes);
-    memory_free(p->start, row_bytes);
-    memory_free(p->volume, n * sizeof(double));
-    memory_free(p->material, owners);
-    memory_free(p->fibre1, 3 * sizeof(double) * owners);
-    memory_free(p->fibre2, 3 * sizeof(double) * owners);
-    bodies_free_given(p);
-    p->velocity = p->start = p->volume = p->fibre1 = p->fibre2 = NULL;
-    p->material = NULL;
-}
-
 /* Bodies of both kinds, sheets numbered after solids. */
 static status join_bodies(simulation *s, report *r) {
     int64_t solids = s->particles.count;
@@ -142,7 +128,7 @@ static status create_engines(simulation *s, int threads, report *r) {
     if (code == STATUS_OK && s->solid && s->sheet) code = join_bodies(s, r);
     if (code != STATUS_OK) return code;
     make_plan(s, s->plan.mask, threads);
-    if (s->solid) drop_loading_arrays(&s->particles);
+    if (s->solid) bodies_free_loading(&s->particles);
     return STATUS_OK;
 }
 

@@ -1,6 +1,7 @@
 # The screen's tests run it over a synthetic session: the tui library leaves session.h's functions to whoever links it.
 sunder_test(view ${CMAKE_SOURCE_DIR}/tests/unit/test_view.c sunder_view)
 sunder_test(view_scale ${CMAKE_SOURCE_DIR}/tests/unit/test_view_scale.c sunder_view)
+sunder_test(typing ${CMAKE_SOURCE_DIR}/tests/unit/test_typing.c sunder_tui)
 sunder_test(knob_panel ${CMAKE_SOURCE_DIR}/tests/unit/test_knob_panel.c sunder_tui sunder_sim)
 
 add_executable(demo_tui ${CMAKE_SOURCE_DIR}/tests/tui/demo_tui.c ${CMAKE_SOURCE_DIR}/tests/tui/fake_session.c)

@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "tui/shell.h"
+#include "tui/typing.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -117,32 +118,8 @@ static const tui_action actions[] = {
 
 /* ---- typing ------------------------------------------------------------------------------------------------------ */
 
-static bool inner_byte(char c) {
-    return ((unsigned char)c & 0xc0) == 0x80;
-}
-
-static void step_cursor(console_state *c, int step) {
-    if (step < 0 && c->cursor > 0) {
-        do c->cursor--;
-        while (c->cursor > 0 && inner_byte(c->text[c->cursor]));
-    } else if (step > 0 && c->text[c->cursor]) {
-        do c->cursor++;
-        while (inner_byte(c->text[c->cursor]));
-    }
-}
-
-static void erase_before(console_state *c) {
-    size_t end = c->cursor;
-    step_cursor(c, -1);
-    memmove(c->text + c->cursor, c->text + end, strlen(c->text + end) + 1);
-}
-
 void console_insert(console_state *c, const char *text) {
-    size_t length = strlen(c->text), more = strlen(text);
-    if (length + more + 1 > sizeof c->text) return;
-    memmove(c->text + c->cursor + more, c->text + c->cursor, length - c->cursor + 1);
-    memcpy(c->text + c->cursor, text, more);
-    c->cursor += more;
+    typing_insert(c->text, sizeof c->text, &c->cursor, text);
 }
 
 static void enter(tui_app *app, console_state *c) {
@@ -161,8 +138,8 @@ static bool type(tui_app *app, void *state, int key) {
     case '\r':
     case '\n':
     case KEY_ENTER: enter(app, c); return true;
-    case KEY_LEFT: step_cursor(c, -1); return true;
-    case KEY_RIGHT: step_cursor(c, 1); return true;
+    case KEY_LEFT: typing_step(c->text, &c->cursor, -1); return true;
+    case KEY_RIGHT: typing_step(c->text, &c->cursor, 1); return true;
     case KEY_HOME:
     case 'A' - '@': c->cursor = 0; return true;
     case KEY_END:
@@ -170,11 +147,11 @@ static bool type(tui_app *app, void *state, int key) {
     case 'U' - '@': c->text[c->cursor = 0] = '\0'; return true;
     case KEY_BACKSPACE:
     case 127:
-    case 8: erase_before(c); return true;
+    case 8: typing_erase_before(c->text, &c->cursor); return true;
     case KEY_DC:
         if (c->text[c->cursor]) {
-            step_cursor(c, 1);
-            erase_before(c);
+            typing_step(c->text, &c->cursor, 1);
+            typing_erase_before(c->text, &c->cursor);
         }
         return true;
     default: break;
@@ -230,23 +207,7 @@ static void draw(tui_app *app, void *state, tui_area area) {
             draw_text(&app->theme, area, bottom--, 1, line->style, text);
         }
     }
-    char before[sizeof c->text];
-    snprintf(before, sizeof before, "%.*s", (int)c->cursor, c->text);
-    const char *shown = before;
-    while (draw_width(shown) > area.width - 4 && *shown)
-        do shown++;
-        while (inner_byte(*shown));
-    int column = draw_text(&app->theme, area, area.height - 1, 0, STYLE_HEAD, "> ");
-    column = draw_text(&app->theme, area, area.height - 1, column, STYLE_STRONG, shown);
-    tui_ink ink = app->theme.styles[STYLE_STRONG];
-    ink.attributes |= A_REVERSE;
-    const char *rest = c->text + c->cursor;
-    char at[8] = " ";
-    size_t size = *rest != '\0';
-    while (size && inner_byte(rest[size])) size++;
-    if (size) snprintf(at, sizeof at, "%.*s", (int)size, rest);
-    column = draw_ink(&app->theme, area, area.height - 1, column, ink, at);
-    draw_text(&app->theme, area, area.height - 1, column, STYLE_STRONG, rest + size);
+    typing_draw(&app->theme, area, area.height - 1, "> ", c->text, c->cursor);
 }
 
 const tui_screen screen_console = {

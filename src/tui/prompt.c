@@ -2,6 +2,7 @@
 #include "tui/shell.h"
 
 #include "tui/actions.h"
+#include "tui/typing.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -104,32 +105,9 @@ static void recall(tui_prompt *p, int step) {
     p->cursor = strlen(p->text);
 }
 
-/* A continuation byte of UTF-8. */
-static bool inner_byte(char c) {
-    return ((unsigned char)c & 0xc0) == 0x80;
-}
-
-static void step_cursor(tui_prompt *p, int step) {
-    if (step < 0 && p->cursor > 0) {
-        do p->cursor--;
-        while (p->cursor > 0 && inner_byte(p->text[p->cursor]));
-    } else if (step > 0 && p->text[p->cursor]) {
-        do p->cursor++;
-        while (inner_byte(p->text[p->cursor]));
-    }
-}
-
-static void erase_before(tui_prompt *p) {
-    size_t end = p->cursor;
-    step_cursor(p, -1);
-    memmove(p->text + p->cursor, p->text + end, strlen(p->text + end) + 1);
-}
-
 static void insert(tui_prompt *p, int key) {
-    size_t length = strlen(p->text);
-    if (key < ' ' || key > 255 || key == 127 || length + 1 >= sizeof p->text) return;
-    memmove(p->text + p->cursor + 1, p->text + p->cursor, length - p->cursor + 1);
-    p->text[p->cursor++] = (char)key;
+    if (key < ' ' || key > 255 || key == 127) return;
+    typing_insert(p->text, sizeof p->text, &p->cursor, (char[2]){(char)key, '\0'});
 }
 
 void prompt_key(tui_app *app, int key) {
@@ -145,8 +123,8 @@ void prompt_key(tui_app *app, int key) {
     case KEY_BTAB: complete(app, -1); break;
     case KEY_UP: recall(p, -1); break;
     case KEY_DOWN: recall(p, 1); break;
-    case KEY_LEFT: step_cursor(p, -1); break;
-    case KEY_RIGHT: step_cursor(p, 1); break;
+    case KEY_LEFT: typing_step(p->text, &p->cursor, -1); break;
+    case KEY_RIGHT: typing_step(p->text, &p->cursor, 1); break;
     case KEY_HOME:
     case 'A' - '@': p->cursor = 0; break;
     case KEY_END:
@@ -156,12 +134,12 @@ void prompt_key(tui_app *app, int key) {
     case 127:
     case 8:
         if (!p->text[0]) p->open = false;
-        else erase_before(p);
+        else typing_erase_before(p->text, &p->cursor);
         break;
     case KEY_DC:
         if (p->text[p->cursor]) {
-            step_cursor(p, 1);
-            erase_before(p);
+            typing_step(p->text, &p->cursor, 1);
+            typing_erase_before(p->text, &p->cursor);
         }
         break;
     default: insert(p, key); break;
@@ -172,23 +150,7 @@ void prompt_key(tui_app *app, int key) {
 
 void widget_prompt(tui_app *app, tui_area area) {
     const tui_prompt *p = &app->shell->prompt;
-    char before[sizeof p->text], at[8] = " ";
-    snprintf(before, sizeof before, "%.*s", (int)p->cursor, p->text);
-    const char *shown = before;
-    /* What does not fit goes off to the left. */
-    while (draw_width(shown) > area.width - 3 && *shown)
-        do shown++;
-        while (inner_byte(*shown));
-    int column = draw_text(&app->theme, area, 0, 0, STYLE_HEAD, ":");
-    column = draw_text(&app->theme, area, 0, column, STYLE_STRONG, shown);
-    const char *rest = p->text + p->cursor;
-    size_t length = *rest != '\0';
-    while (length && inner_byte(rest[length])) length++;
-    if (length) snprintf(at, sizeof at, "%.*s", (int)length, rest);
-    tui_ink ink = app->theme.styles[STYLE_STRONG];
-    ink.attributes |= A_REVERSE;
-    column = draw_ink(&app->theme, area, 0, column, ink, at);
-    draw_text(&app->theme, area, 0, column, STYLE_STRONG, rest + length);
+    typing_draw(&app->theme, area, 0, ":", p->text, p->cursor);
 }
 
 void widget_candidates(tui_app *app, tui_area area) {

@@ -61,6 +61,10 @@ int cli_usage(const char *name, const char *format, ...) __attribute__((format(p
 /* Prints all of a script's reports; returns the exit code of the first. */
 int cli_fail_script(const script_reports *reports);
 
+/* Ends a JSON text, prints it on standard output and frees it. */
+struct json_writer;
+status cli_print_json(struct json_writer *w, report *r);
+
 /* Adds a --set KEY=VALUE. Returns 0, or 2 with a message. */
 int cli_add_setting(cli_scene_options *o, const char *name, const char *text);
 

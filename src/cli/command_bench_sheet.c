@@ -132,9 +132,8 @@ static int print_json(const sheet_row *rows, int count, const against_row *other
     for (int i = 0; i < other_count; i++) json_against(&w, &others[i]);
     json_array_end(&w);
     json_object_end(&w);
-    if (code == STATUS_OK) code = json_finish(&w, &r);
-    if (code == STATUS_OK) puts(w.text);
-    json_free(&w);
+    if (code == STATUS_OK) code = cli_print_json(&w, &r);
+    else json_free(&w);
     return code == STATUS_OK ? 0 : cli_fail(&r);
 }
 

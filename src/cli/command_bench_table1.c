@@ -364,10 +364,7 @@ static int print_json(const table1_request *q, const machine *here, const measur
     for (int i = 0; i < count; i++) json_row(&w, q, &rows[i]);
     json_array_end(&w);
     json_object_end(&w);
-    status code = json_finish(&w, &r);
-    if (code == STATUS_OK) puts(w.text);
-    json_free(&w);
-    return code == STATUS_OK ? 0 : cli_fail(&r);
+    return cli_print_json(&w, &r) == STATUS_OK ? 0 : cli_fail(&r);
 }
 
 static status do_row(const table1_request *q, measured_row *m, FILE *out) {

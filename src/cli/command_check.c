@@ -44,8 +44,7 @@ static void print_json(const script_reports *reports, const char *note) {
     if (note) json_string(&w, note);
     json_array_end(&w);
     json_object_end(&w);
-    if (json_finish(&w, &r) == STATUS_OK) puts(w.text);
-    json_free(&w);
+    if (cli_print_json(&w, &r) != STATUS_OK) (void)cli_fail(&r);
 }
 
 int command_check(int count, char **arguments) {

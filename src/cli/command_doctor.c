@@ -120,8 +120,7 @@ static void print_json(const doctor_report *d, bool good) {
     json_member_boolean(&w, "ok", good);
     for (int i = 0; i < d->count; i++) json_member_string(&w, d->rows[i].name, d->rows[i].value);
     json_object_end(&w);
-    if (json_finish(&w, &r) == STATUS_OK) puts(w.text);
-    json_free(&w);
+    if (cli_print_json(&w, &r) != STATUS_OK) (void)cli_fail(&r);
 }
 
 int command_doctor(int count, char **arguments) {

@@ -142,8 +142,7 @@ static void print_json(const simulation *state, const scene *s, const simulation
     json_member_number(&w, "predicted_steps", c->steps);
     json_member_number(&w, "predicted_seconds", c->seconds);
     json_object_end(&w);
-    if (json_finish(&w, &r) == STATUS_OK) puts(w.text);
-    json_free(&w);
+    if (cli_print_json(&w, &r) != STATUS_OK) (void)cli_fail(&r);
 }
 
 static int explain(const char *path, const script_options *options, const simulation_options *engine, bool json) {

@@ -246,10 +246,7 @@ static status print_json(const export_command *c, report *r) {
     json_member_string(&w, "out", c->out);
     json_member_integer(&w, "frames", c->all || strcmp(c->format, "usda") == 0 ? c->frame_count : 1);
     json_object_end(&w);
-    status code = json_finish(&w, r);
-    if (code == STATUS_OK) puts(w.text);
-    json_free(&w);
-    return code;
+    return cli_print_json(&w, r);
 }
 
 int command_export(int count, char **arguments) {
@@ -260,7 +257,7 @@ int command_export(int count, char **arguments) {
     int result = parse(&c, count, arguments);
     if (result) return result;
     status code = check_format(&c, &r);
-    if (code == STATUS_OK) code = cli_open_ledger(c.database, path, &l, &r);
+    if (code == STATUS_OK) code = ledger_open_given(c.database, path, sizeof path, &l, &r);
     if (code == STATUS_OK) code = runs_find(l, c.run, c.id, c.folder, &r);
     /* A table of measures, unless particles are meant by naming frames. */
     bool numbers = strcmp(c.format, "json") == 0 || (strcmp(c.format, "csv") == 0 && c.frame < 0 && !c.all);

@@ -137,10 +137,7 @@ static status print_json(const mesh_command *c, const char *id, report *r) {
     json_member_integer(&w, "vertices", c->vertices);
     json_member_integer(&w, "triangles", c->triangles);
     json_object_end(&w);
-    status code = json_finish(&w, r);
-    if (code == STATUS_OK) puts(w.text);
-    json_free(&w);
-    return code;
+    return cli_print_json(&w, r);
 }
 
 /* Tetrahedra have a surface of their own; frame 0 says which vertices are their corners. */
@@ -159,7 +156,7 @@ int command_mesh(int count, char **arguments) {
     frame_player *player = NULL;
     int result = parse(&c, count, arguments);
     if (result) return result;
-    status code = cli_open_ledger(c.database, path, &l, &r);
+    status code = ledger_open_given(c.database, path, sizeof path, &l, &r);
     if (code == STATUS_OK) code = runs_find(l, c.run, id, folder, &r);
     if (l) ledger_close(l);
     if (code == STATUS_OK) code = frame_player_open(folder, 0, &player, &r);

@@ -119,7 +119,7 @@ static status read_curves(plot_command *c, ledger *l, report *r) {
 static status collect(plot_command *c, int count, char **names, report *r) {
     char path[1024];
     ledger *l;
-    status code = cli_open_ledger(c->database, path, &l, r);
+    status code = ledger_open_given(c->database, path, sizeof path, &l, r);
     if (code == STATUS_OK) code = find_runs(c, l, count, names, r);
     for (int m = 0; m < c->measure_count && code == STATUS_OK; m++) code = ledger_check_measure(l, c->measures[m], r);
     if (code == STATUS_OK && c->against) {
@@ -214,10 +214,7 @@ static status print_json(const plot_command *c, report *r) {
     }
     json_array_end(&w);
     json_object_end(&w);
-    status code = json_finish(&w, r);
-    if (code == STATUS_OK) puts(w.text);
-    json_free(&w);
-    return code;
+    return cli_print_json(&w, r);
 }
 
 static status write_figure(const plot_command *c, report *r) {

@@ -11,14 +11,6 @@ status runs_find(ledger *l, const char *name, char id[LEDGER_ID], char *output, 
     return ledger_resolve(l, name, id, output ? output : ignored, 1024, r);
 }
 
-status cli_open_ledger(const char *database, char path[1024], ledger **out, report *r) {
-    status code = STATUS_OK;
-    *out = NULL;
-    if (database) snprintf(path, 1024, "%s", database);
-    else code = ledger_default_path(path, 1024, r);
-    return code == STATUS_OK ? ledger_open(path, out, r) : code;
-}
-
 static const struct {
     const char *name;
     runs_verb *call;
@@ -79,7 +71,7 @@ int command_runs(int count, char **arguments) {
     ledger *l = NULL;
     runs_verb *verb = find_verb(optind < count ? arguments[optind++] : "list", &r);
     if (!verb) return cli_fail(&r);
-    status code = cli_open_ledger(o.database, o.path, &l, &r);
+    status code = ledger_open_given(o.database, o.path, sizeof o.path, &l, &r);
     if (code == STATUS_OK) code = verb(l, &o, count - optind, arguments + optind, &exit, &r);
     if (l) ledger_close(l);
     return code == STATUS_OK ? exit : cli_fail(&r);

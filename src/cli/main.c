@@ -1,6 +1,7 @@
 /* sunder: finds the command and calls it. */
 #include "cli/cli.h"
 
+#include "base/json.h"
 #include "base/names.h"
 
 #include <errno.h>
@@ -14,7 +15,7 @@ static const command commands[] = {
      "simulate a scene: frames, ledger row, live screen with --tui", command_run},
     {"check", "check SCENE [--set KEY=VALUE]… [--recipe NAME] [--json]", "validate a scene without running it", command_check},
     {"explain", "explain SCENE [--set KEY=VALUE]… [--json]", "show the plan: effects, fields, bytes, step limits, cost", command_explain},
-    {"sweep", "sweep SCRIPT.lua [-j N] [--list] [--set KEY=VALUE]… [--frames N] [--threads N] [--db FILE] [--json] [--quiet] [--verbose]",
+    {"sweep", "sweep SCRIPT.lua [-j N] [--list] [--set KEY=VALUE]… [--frames N] [--threads N] [--db FILE] [--json] [--quiet] [--lines]",
      "run a scene over lists of values; what is done already is left out", command_sweep},
     {"stress", "stress [CASE]… [--effect NAME]… [--quick | --full] [--precision f32|f64|both] [--simd NAME] [--threads N] [-j N] [--time-limit S]\n"
                "                [--db FILE] [--json] [--quiet] [--verbose]   stress --list | --last | --measures  [--json]",
@@ -57,6 +58,13 @@ int cli_fail(const report *r) {
     report_format(r, text, sizeof text);
     fprintf(stderr, "sunder: %s\n", text);
     return status_exit_code(r->code);
+}
+
+status cli_print_json(json_writer *w, report *r) {
+    status code = json_finish(w, r);
+    if (code == STATUS_OK) puts(w->text);
+    json_free(w);
+    return code;
 }
 
 int cli_fail_script(const script_reports *reports) {

@@ -26,7 +26,4 @@ runs_verb verb_reproduce;
 /* A run by its id, the beginning or end of it, or "last". output may be NULL, else [1024]. */
 status runs_find(ledger *l, const char *name, char id[LEDGER_ID], char *output, report *r);
 
-/* Opens the ledger of --db, or the default one; path [1024] is where it is. */
-status cli_open_ledger(const char *database, char path[1024], ledger **out, report *r);
-
 #endif

@@ -47,10 +47,7 @@ static status tell(const runs_options *o, const char *id, const char *key, const
     }
     json_array_end(&w);
     json_object_end(&w);
-    status code = json_finish(&w, r);
-    if (code == STATUS_OK) puts(w.text);
-    json_free(&w);
-    return code;
+    return cli_print_json(&w, r);
 }
 
 /* runs tag RUN [TAG]…: adds them (--remove: takes them away) and says which it has. */
@@ -84,10 +81,7 @@ status verb_note(ledger *l, const runs_options *o, int count, char **names, int 
     json_member_string(&w, "run_id", id);
     json_member_string(&w, "note", text);
     json_object_end(&w);
-    code = json_finish(&w, r);
-    if (code == STATUS_OK) puts(w.text);
-    json_free(&w);
-    return code;
+    return cli_print_json(&w, r);
 }
 
 /* ---- taking runs away -------------------------------------------------------------------------------------------- */
@@ -163,10 +157,7 @@ static status print_removed(const doomed *runs, int count, report *r) {
     }
     json_array_end(&w);
     json_object_end(&w);
-    status code = json_finish(&w, r);
-    if (code == STATUS_OK) puts(w.text);
-    json_free(&w);
-    return code;
+    return cli_print_json(&w, r);
 }
 
 /* runs rm RUN… [--yes] [--keep-files] */

@@ -92,10 +92,7 @@ static status print_json(const reproduction *p, report *r) {
         json_object_end(&w);
     }
     json_object_end(&w);
-    status code = json_finish(&w, r);
-    if (code == STATUS_OK) puts(w.text);
-    json_free(&w);
-    return code;
+    return cli_print_json(&w, r);
 }
 
 static void print_text(const reproduction *p) {

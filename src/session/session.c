@@ -49,10 +49,7 @@ void session_release_folder(const session *s) {
 /* ---- starting ---------------------------------------------------------------------------------------------------- */
 
 static status open_ledger(session *s, report *r) {
-    status code = STATUS_OK;
-    if (s->options.database) snprintf(s->database, sizeof s->database, "%s", s->options.database);
-    else code = ledger_default_path(s->database, sizeof s->database, r);
-    return code == STATUS_OK ? ledger_open(s->database, &s->ledger, r) : code;
+    return ledger_open_given(s->options.database, s->database, sizeof s->database, &s->ledger, r);
 }
 
 static status find_resumed(session *s, report *r) {

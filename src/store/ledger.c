@@ -280,6 +280,12 @@ status ledger_open(const char *path, ledger **out, report *r) {
     return s;
 }
 
+status ledger_open_given(const char *given, char *path, size_t size, ledger **out, report *r) {
+    *out = NULL;
+    status s = given ? copy_path(path, size, given, r) : ledger_default_path(path, size, r);
+    return s ? s : ledger_open(path, out, r);
+}
+
 void ledger_close(ledger *l) {
     if (!l) return;
     for (int i = 0; i < l->statement_count; i++) sqlite3_finalize(l->statements[i].statement);

@@ -24,6 +24,8 @@ status ledger_runs_folder(char *path, size_t size, report *r);
 
 /* Opens (creating and migrating as needed). A file that is no database, or a newer schema, is an error that says so. */
 status ledger_open(const char *path, ledger **out, report *r);
+/* Opens the ledger that was asked for (--db), or the default one where `given` is NULL; path[size] becomes its path. */
+status ledger_open_given(const char *given, char *path, size_t size, ledger **out, report *r);
 void ledger_close(ledger *l);
 
 typedef struct ledger_run {

@@ -1,6 +1,7 @@
 /* The app's own functions: notices, questions, the run in view, screens. */
 #include "tui/app.h"
 
+#include "store/ledger.h"
 #include "tui/actions.h"
 #include "tui/shell.h"
 
@@ -16,6 +17,11 @@ double app_clock(void) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+status app_open_ledger(const tui_app *app, ledger **out, report *r) {
+    char path[TUI_PATH];
+    return ledger_open_given(app->database[0] ? app->database : NULL, path, sizeof path, out, r);
 }
 
 void app_wake(tui_app *app) {

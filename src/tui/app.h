@@ -57,6 +57,10 @@ void app_fail(tui_app *app, const report *r);
 /* Seconds on the monotonic clock. */
 double app_clock(void);
 
+/* Opens the workbench's ledger; the caller closes it. */
+struct ledger;
+status app_open_ledger(const tui_app *app, struct ledger **out, report *r);
+
 /* From any thread: lets the loop look at its screens' `tick` at once. */
 void app_wake(tui_app *app);
 

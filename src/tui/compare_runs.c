@@ -7,15 +7,6 @@
 
 enum { CACHE_BYTES = 96 << 20 };
 
-static status open_ledger(const tui_app *app, ledger **out, report *r) {
-    char path[TUI_PATH];
-    status s = STATUS_OK;
-    *out = NULL;
-    if (app->database[0]) snprintf(path, sizeof path, "%s", app->database);
-    else s = ledger_default_path(path, sizeof path, r);
-    return s == STATUS_OK ? ledger_open(path, out, r) : s;
-}
-
 /* ---- what differs ------------------------------------------------------------------------------------------------ */
 
 /* Appends "name left → right" for parameters, "@frame path = value" for turns that only one of the two has. */
@@ -82,7 +73,7 @@ status compare_choose(tui_app *app, compare_state *state, int which, const char 
     char id[LEDGER_ID], folder[TUI_PATH], argument[LEDGER_ID + 8];
     const char *const arguments[] = {argument};
     ledger *l;
-    status s = open_ledger(app, &l, r);
+    status s = app_open_ledger(app, &l, r);
     if (s == STATUS_OK) s = ledger_resolve(l, run, id, folder, sizeof folder, r);
     if (s == STATUS_OK) {
         close_side(side);

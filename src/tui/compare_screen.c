@@ -35,13 +35,10 @@ static status take_id(void *context, const ledger_cell *cells, int count, report
 
 static bool complete_run(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
     completion c = {.text = text, .out = out, .index = index};
-    char path[TUI_PATH];
     report unused;
-    ledger *l = NULL;
+    ledger *l;
     out[0] = '\0';
-    if (app->database[0]) snprintf(path, sizeof path, "%s", app->database);
-    else if (ledger_default_path(path, sizeof path, &unused) != STATUS_OK) return false;
-    if (ledger_open(path, &l, &unused) == STATUS_OK)
+    if (app_open_ledger(app, &l, &unused) == STATUS_OK)
         (void)ledger_each_row(l, "SELECT id FROM runs ORDER BY started DESC LIMIT 100", NULL, 0, take_id, &c, &unused);
     if (l) ledger_close(l);
     return out[0] != '\0';

@@ -61,9 +61,7 @@ status console_query(ledger **open, const char *database, const char *function, 
     const char *text = count > 0 ? arguments[0] : "", *named;
     report unused;
     if (!*open) {
-        snprintf(path, sizeof path, "%s", database);
-        status s = database[0] ? STATUS_OK : ledger_default_path(path, sizeof path, r);
-        if (s == STATUS_OK) s = ledger_open(path, open, r);
+        status s = ledger_open_given(database[0] ? database : NULL, path, sizeof path, open, r);
         if (s != STATUS_OK) return s;
     }
     if (strcmp(function, "runs") == 0) {

@@ -68,13 +68,6 @@ status runs_arrange(runs_state *s, report *r) {
     return STATUS_OK;
 }
 
-static status open_ledger(const tui_app *app, runs_state *s, report *r) {
-    char path[TUI_PATH];
-    snprintf(path, sizeof path, "%s", app->database);
-    status code = path[0] ? STATUS_OK : ledger_default_path(path, sizeof path, r);
-    return code == STATUS_OK ? ledger_open(path, &s->l, r) : code;
-}
-
 static bool reserve_rows(runs_state *s, int count) {
     if (count <= s->row_capacity) return true;
     int *rows = memory_allocate_array((size_t)count + 64, sizeof *rows);
@@ -89,7 +82,7 @@ static bool reserve_rows(runs_state *s, int count) {
 static status read_table(tui_app *app, runs_state *s, report *r) {
     run_table *fresh;
     char kept[LEDGER_ID] = "";
-    status code = s->l ? STATUS_OK : open_ledger(app, s, r);
+    status code = s->l ? STATUS_OK : app_open_ledger(app, &s->l, r);
     if (code == STATUS_OK) code = run_table_read(s->l, &fresh, r);
     if (code != STATUS_OK) return code;
     if (runs_chosen(s)) snprintf(kept, sizeof kept, "%s", runs_chosen(s));

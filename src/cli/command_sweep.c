@@ -22,13 +22,12 @@ extern char **environ;
 
 enum { JOBS = 64, ARGUMENTS = 16 + 2 * (CLI_SETTINGS + SWEEP_SETTINGS + SWEEP_AXES), RUN_TEXT = 400 };
 
-typedef enum run_state { RUN_WAITING, RUN_GOING, RUN_DONE, RUN_FAILED, RUN_SKIPPED } run_state;
 static const char *const state_names[] = {"not started", "interrupted", "done", "failed", "done before"};
 
 typedef struct sweep_run {
-    run_state state;
+    sweep_run_state state;
     int exit_code;
-    char id[LEDGER_ID], message[RUN_TEXT];
+    char id[SWEEP_ID], message[SWEEP_MESSAGE];
 } sweep_run;
 
 typedef struct job {
@@ -40,7 +39,7 @@ typedef struct sweep_command {
     cli_scene_options given; /* .scene is the sweep's file */
     const char *database;
     long jobs, threads, frames;
-    bool json, quiet, list, verbose; /* list: say what is done, and run nothing; verbose: also say when a run starts */
+    bool json, quiet, list, lines; /* list: say what is done, and run nothing; lines: for programs, also when a run starts */
     char path[1024], tag[64]; /* the ledger; the script's name, by which its runs are found again */
     sweep plan;
     int count;
@@ -73,12 +72,18 @@ static void describe_run(const sweep_command *c, int run, char text[RUN_TEXT]) {
         used += (size_t)snprintf(text + used, RUN_TEXT - used, "%s%s=%s", a ? " " : "", c->plan.axes[a].name, axis_value(c, which, a));
 }
 
-static void say(const sweep_command *c, int run, const char *word) {
+static void say(const sweep_command *c, int run) {
     char text[RUN_TEXT];
-    if (c->quiet) return;
-    describe_run(c, run, text);
     const sweep_run *r = &c->runs[run];
-    fprintf(c->json ? stderr : stdout, "%d/%d  %-11s  %s  %s%s%s\n", run + 1, c->count, word, *r->id ? r->id : "-", text,
+    if (c->lines) {
+        sweep_line line = {.run = run, .count = c->count, .state = r->state};
+        memcpy(line.id, r->id, sizeof line.id);
+        memcpy(line.message, r->message, sizeof line.message);
+        sweep_line_write(&line, stdout);
+    }
+    if (c->quiet || c->lines) return;
+    describe_run(c, run, text);
+    fprintf(c->json ? stderr : stdout, "%d/%d  %-11s  %s  %s%s%s\n", run + 1, c->count, state_names[r->state], *r->id ? r->id : "-", text,
             *r->message ? "  " : "", r->message);
     fflush(c->json ? stderr : stdout);
 }
@@ -128,13 +133,13 @@ static status prepare(sweep_command *c, script_reports *reports, report *r) {
         if (identify(c, i, hash, &frames, &own)) {
             runnable++;
             code = find_done(l, hash, frames, c->runs[i].id, r);
-            if (c->runs[i].id[0]) c->runs[i].state = RUN_SKIPPED;
+            if (c->runs[i].id[0]) c->runs[i].state = SWEEP_SKIPPED;
         } else {
-            c->runs[i].state = RUN_FAILED;
+            c->runs[i].state = SWEEP_FAILED;
             c->runs[i].exit_code = status_exit_code(own.items[0].code);
             char text[1600];
             report_format(&own.items[0], text, sizeof text);
-            snprintf(c->runs[i].message, RUN_TEXT, "%.*s", RUN_TEXT - 1, text);
+            snprintf(c->runs[i].message, SWEEP_MESSAGE, "%.*s", SWEEP_MESSAGE - 1, text);
             if (reports->count == 0) *reports = own;
         }
     }
@@ -202,7 +207,7 @@ static status launch(sweep_command *c, int slot, int run, report *r) {
     if (trouble) return report_set(r, STATUS_SYSTEM, "starting a run: %s", strerror(trouble));
     j->run = run;
     children[slot] = pid;
-    c->runs[run].state = RUN_GOING;
+    c->runs[run].state = SWEEP_GOING;
     return STATUS_OK;
 }
 
@@ -214,9 +219,9 @@ static void read_output(job *j, sweep_run *run) {
         const char *at = strstr(line, "\"run_id\": \"");
         if (at) snprintf(run->id, sizeof run->id, "%.*s", (int)strcspn(at + 11, "\""), at + 11);
     }
-    while (run->state == RUN_FAILED && fgets(line, sizeof line, j->error)) {
+    while (run->state == SWEEP_FAILED && fgets(line, sizeof line, j->error)) {
         line[strcspn(line, "\n")] = '\0';
-        if (*line) snprintf(run->message, RUN_TEXT, "%.*s", RUN_TEXT - 1, line);
+        if (*line) snprintf(run->message, SWEEP_MESSAGE, "%.*s", SWEEP_MESSAGE - 1, line);
     }
 }
 
@@ -233,9 +238,9 @@ static void reap(sweep_command *c, pid_t pid, int outcome) {
         job *j = &c->job[slot];
         sweep_run *run = &c->runs[j->run];
         run->exit_code = WIFEXITED(outcome) ? WEXITSTATUS(outcome) : 128 + WTERMSIG(outcome);
-        if (run->exit_code != 130) run->state = run->exit_code == 0 ? RUN_DONE : RUN_FAILED;
+        if (run->exit_code != 130) run->state = run->exit_code == 0 ? SWEEP_DONE : SWEEP_FAILED;
         read_output(j, run);
-        say(c, j->run, state_names[run->state]);
+        say(c, j->run);
         close_job(j);
     }
 }
@@ -246,16 +251,16 @@ static status run_all(sweep_command *c, report *r) {
     catch_signals();
     for (int slot = 0; slot < JOBS; slot++) c->job[slot].run = -1;
     for (int i = 0; i < c->count; i++)
-        if (c->runs[i].state != RUN_WAITING || c->list) say(c, i, state_names[c->runs[i].state]);
+        if (c->runs[i].state != SWEEP_WAITING || c->list) say(c, i);
     if (c->list) return STATUS_OK;
     for (;;) {
         for (int slot = 0; slot < c->jobs && !stopped && code == STATUS_OK; slot++) {
-            while (next < c->count && c->runs[next].state != RUN_WAITING) next++;
+            while (next < c->count && c->runs[next].state != SWEEP_WAITING) next++;
             if (next == c->count || c->job[slot].run >= 0) continue;
             code = launch(c, slot, next, r);
             if (code != STATUS_OK) close_job(&c->job[slot]);
             else going++;
-            if (code == STATUS_OK && c->verbose) say(c, next, "started");
+            if (code == STATUS_OK && c->lines) say(c, next);
         }
         if (going == 0) return code;
         int outcome;
@@ -284,7 +289,7 @@ static status tag_runs(const sweep_command *c, report *r) {
     return code;
 }
 
-static int count_state(const sweep_command *c, run_state state) {
+static int count_state(const sweep_command *c, sweep_run_state state) {
     int count = 0;
     for (int i = 0; i < c->count; i++) count += c->runs[i].state == state;
     return count;
@@ -313,18 +318,15 @@ static status print_json(const sweep_command *c, report *r) {
     json_member_string(&w, "scene", c->plan.scene);
     json_member_string(&w, "tag", c->tag);
     json_member_string(&w, "db", c->path);
-    json_member_integer(&w, "done", count_state(c, RUN_DONE));
-    json_member_integer(&w, "done_before", count_state(c, RUN_SKIPPED));
-    json_member_integer(&w, "failed", count_state(c, RUN_FAILED));
+    json_member_integer(&w, "done", count_state(c, SWEEP_DONE));
+    json_member_integer(&w, "done_before", count_state(c, SWEEP_SKIPPED));
+    json_member_integer(&w, "failed", count_state(c, SWEEP_FAILED));
     json_key(&w, "runs");
     json_array(&w);
     for (int i = 0; i < c->count; i++) write_run(&w, c, i);
     json_array_end(&w);
     json_object_end(&w);
-    status code = json_finish(&w, r);
-    if (code == STATUS_OK) puts(w.text);
-    json_free(&w);
-    return code;
+    return cli_print_json(&w, r);
 }
 
 static void name_tag(sweep_command *c) {
@@ -337,22 +339,22 @@ static int finish(sweep_command *c) {
     status code = c->list ? STATUS_OK : tag_runs(c, &r); /* who only looks writes nothing */
     if (code == STATUS_OK && c->json) code = print_json(c, &r);
     if (code != STATUS_OK) return cli_fail(&r);
-    int failed = count_state(c, RUN_FAILED);
-    if (!c->quiet && !c->json)
-        printf("%d done, %d done before, %d failed, of %d: sunder runs list --where \"tags LIKE '%%%s%%'\"\n", count_state(c, RUN_DONE),
-               count_state(c, RUN_SKIPPED), failed, c->count, c->tag);
+    int failed = count_state(c, SWEEP_FAILED);
+    if (!c->quiet && !c->json && !c->lines)
+        printf("%d done, %d done before, %d failed, of %d: sunder runs list --where \"tags LIKE '%%%s%%'\"\n", count_state(c, SWEEP_DONE),
+               count_state(c, SWEEP_SKIPPED), failed, c->count, c->tag);
     return stopped ? 130 : failed ? 1 : 0;
 }
 
 /* ---- the command ------------------------------------------------------------------------------------------------- */
 
-enum { OPTION_SET = 256, OPTION_FRAMES, OPTION_THREADS, OPTION_DB, OPTION_JSON, OPTION_QUIET, OPTION_LIST, OPTION_VERBOSE };
+enum { OPTION_SET = 256, OPTION_FRAMES, OPTION_THREADS, OPTION_DB, OPTION_JSON, OPTION_QUIET, OPTION_LIST, OPTION_LINES };
 
 static const struct option long_options[] = {
     {"set", required_argument, NULL, OPTION_SET},         {"frames", required_argument, NULL, OPTION_FRAMES},
     {"threads", required_argument, NULL, OPTION_THREADS}, {"db", required_argument, NULL, OPTION_DB},
     {"json", no_argument, NULL, OPTION_JSON},             {"quiet", no_argument, NULL, OPTION_QUIET},
-    {"list", no_argument, NULL, OPTION_LIST},             {"verbose", no_argument, NULL, OPTION_VERBOSE},
+    {"list", no_argument, NULL, OPTION_LIST},             {"lines", no_argument, NULL, OPTION_LINES},
     {"jobs", required_argument, NULL, 'j'},               {NULL, 0, NULL, 0}};
 
 static int parse(sweep_command *c, int count, char **arguments) {
@@ -366,7 +368,7 @@ static int parse(sweep_command *c, int count, char **arguments) {
         else if (option == OPTION_JSON) c->json = true;
         else if (option == OPTION_QUIET) c->quiet = true;
         else if (option == OPTION_LIST) c->list = true;
-        else if (option == OPTION_VERBOSE) c->verbose = true;
+        else if (option == OPTION_LINES) c->lines = true;
         else return cli_usage("sweep", "wrong option");
     }
     if (code) return code;

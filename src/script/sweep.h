@@ -4,7 +4,9 @@
 
 #include "script/script.h"
 
-enum { SWEEP_AXES = 8, SWEEP_VALUES = 64, SWEEP_SETTINGS = 24, SWEEP_TEXT = 128, SWEEP_PATH = 1024, SWEEP_RUNS = 4096 };
+#include <stdio.h>
+
+enum { SWEEP_AXES = 8, SWEEP_VALUES = 64, SWEEP_SETTINGS = 24, SWEEP_TEXT = 128, SWEEP_PATH = 1024, SWEEP_RUNS = 4096, SWEEP_ID = 40, SWEEP_MESSAGE = 400 };
 
 /* One name and the values that it takes in turn, as --set would write them. */
 typedef struct sweep_axis {
@@ -28,5 +30,19 @@ status sweep_load(const char *path, sweep *out, script_reports *reports);
 /* How many runs it has, and the value of each axis in one of them: which[axis] < axes[axis].count. */
 int sweep_count(const sweep *s);
 void sweep_cell(const sweep *s, int run, int which[SWEEP_AXES]);
+
+/* What has become of a run: waiting, going on, done now, failed, or left out because it was done before. */
+typedef enum sweep_run_state { SWEEP_WAITING, SWEEP_GOING, SWEEP_DONE, SWEEP_FAILED, SWEEP_SKIPPED } sweep_run_state;
+
+/* A line of `sunder sweep --lines`: tabs between run, count, the state's word, id and message. */
+typedef struct sweep_line {
+    int run, count; /* from 0; of how many */
+    sweep_run_state state;
+    char id[SWEEP_ID], message[SWEEP_MESSAGE]; /* of the run in the ledger, and what went wrong; "" for none */
+} sweep_line;
+
+void sweep_line_write(const sweep_line *line, FILE *out);
+/* Without the newline. False when it is no such line. */
+bool sweep_line_read(const char *text, sweep_line *out);
 
 #endif

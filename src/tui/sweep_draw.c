@@ -25,9 +25,9 @@ static void draw_axis(const tui_app *app, tui_area area, int row, const sweep_ax
     for (int i = 0; i < axis->count && column < area.width; i++) column = draw_format(&app->theme, area, row, column, STYLE_TEXT, "%s%s", i ? ", " : "", axis->value[i]);
 }
 
-static int count_state(const sweep_state *s, cell_state state) {
+static int count_state(const sweep_state *s, sweep_run_state state) {
     int count = 0;
-    for (int i = 0; i < s->count; i++) count += s->cells[i].state == state;
+    for (int i = 0; i < s->count; i++) count += s->cells[i].known && s->cells[i].last.state == state;
     return count;
 }
 
@@ -35,8 +35,8 @@ static void draw_head(tui_app *app, const sweep_state *s, tui_area area) {
     int column = draw_text(&app->theme, area, 0, 0, STYLE_STRONG, s->plan.title[0] ? s->plan.title : s->scripts[s->script]);
     const char *slash = strrchr(s->plan.scene, '/');
     column = draw_format(&app->theme, area, 0, column, STYLE_DIM, "  %s  ", slash ? slash + 1 : s->plan.scene);
-    column = draw_format(&app->theme, area, 0, column, STYLE_GOOD, "%d done", count_state(s, CELL_DONE));
-    if (count_state(s, CELL_FAILED)) column = draw_format(&app->theme, area, 0, column, STYLE_BAD, "  %d failed", count_state(s, CELL_FAILED));
+    column = draw_format(&app->theme, area, 0, column, STYLE_GOOD, "%d done", count_state(s, SWEEP_DONE) + count_state(s, SWEEP_SKIPPED));
+    if (count_state(s, SWEEP_FAILED)) column = draw_format(&app->theme, area, 0, column, STYLE_BAD, "  %d failed", count_state(s, SWEEP_FAILED));
     column = draw_format(&app->theme, area, 0, column, STYLE_DIM, "  of %d%s", s->count, s->listing ? "  looking what is done" : s->going ? "  going on" : "");
 }
 
@@ -51,12 +51,13 @@ static void find_range(const sweep_state *s, double *low, double *high) {
 }
 
 static const char *state_word(const sweep_cell_result *cell) {
-    switch (cell->state) {
-    case CELL_GOING: return "running";
-    case CELL_FAILED: return "failed";
-    case CELL_DONE: return "done";
-    case CELL_WAITING: return "-";
-    case CELL_UNKNOWN: break;
+    if (!cell->known) return "";
+    switch (cell->last.state) {
+    case SWEEP_GOING: return "running";
+    case SWEEP_FAILED: return "failed";
+    case SWEEP_DONE:
+    case SWEEP_SKIPPED: return "done";
+    case SWEEP_WAITING: return "-";
     }
     return "";
 }
@@ -73,7 +74,7 @@ static void draw_cell(tui_app *app, const sweep_cell_result *cell, tui_area area
     char text[32];
     bool valued = isfinite(cell->value);
     double fraction = valued && high > low ? (cell->value - low) / (high - low) : 0.5;
-    tui_ink ink = valued ? cell_ink(app, fraction) : app->theme.styles[cell->state == CELL_FAILED ? STYLE_BAD : cell->state == CELL_GOING ? STYLE_STRONG : STYLE_DIM];
+    tui_ink ink = valued ? cell_ink(app, fraction) : app->theme.styles[cell->last.state == SWEEP_FAILED ? STYLE_BAD : cell->last.state == SWEEP_GOING ? STYLE_STRONG : STYLE_DIM];
     if (valued) snprintf(text, sizeof text, "%.3g", cell->value);
     else snprintf(text, sizeof text, "%s", state_word(cell));
     /* A space may be sent as an erasure, which not every terminal does in colour. */
@@ -118,9 +119,9 @@ static void draw_foot(tui_app *app, const sweep_state *s, tui_area area) {
     if (run < 0) return;
     const sweep_cell_result *cell = &s->cells[run];
     int column = draw_format(&app->theme, area, 0, 0, STYLE_DIM, "%d/%d ", run + 1, s->count);
-    column = draw_format(&app->theme, area, 0, column, STYLE_STRONG, "%s", cell->id[0] ? cell->id : state_word(cell));
+    column = draw_format(&app->theme, area, 0, column, STYLE_STRONG, "%s", cell->last.id[0] ? cell->last.id : state_word(cell));
     if (isfinite(cell->value)) column = draw_format(&app->theme, area, 0, column, STYLE_TEXT, "  %s = %.6g", s->measure, cell->value);
-    if (cell->message[0]) draw_format(&app->theme, area, 0, column, STYLE_BAD, "  %s", cell->message);
+    if (cell->last.message[0]) draw_format(&app->theme, area, 0, column, STYLE_BAD, "  %s", cell->last.message);
     else if (s->said[0] && s->child.ended && s->child.exit_code == 2) draw_format(&app->theme, area, 0, column, STYLE_DIM, "  %s", s->said);
 }
 

@@ -85,21 +85,13 @@ static status take_value(void *context, const ledger_cell *cells, int count, rep
     return STATUS_OK;
 }
 
-static status open_ledger(const tui_app *app, sweep_state *s, report *r) {
-    char path[TUI_PATH];
-    if (s->l) return STATUS_OK;
-    snprintf(path, sizeof path, "%s", app->database);
-    status code = path[0] ? STATUS_OK : ledger_default_path(path, sizeof path, r);
-    return code == STATUS_OK ? ledger_open(path, &s->l, r) : code;
-}
-
 static void read_value(tui_app *app, sweep_state *s, sweep_cell_result *cell) {
     char run[LEDGER_ID + 4], measure[SWEEPS_NAME + 16];
     const char *const arguments[] = {run, measure};
     report unused;
     cell->value = NAN;
-    if (!cell->id[0] || open_ledger(app, s, &unused) != STATUS_OK) return;
-    snprintf(run, sizeof run, "id=%s", cell->id);
+    if (!cell->last.id[0] || (!s->l && app_open_ledger(app, &s->l, &unused) != STATUS_OK)) return;
+    snprintf(run, sizeof run, "id=%s", cell->last.id);
     snprintf(measure, sizeof measure, "measure=%s", s->measure);
     (void)ledger_each_row(s->l, "SELECT value FROM final_measures WHERE id = :id AND name = :measure", arguments, 2, take_value, &cell->value, &unused);
 }
@@ -111,36 +103,22 @@ static void read_values(tui_app *app, sweep_state *s) {
 
 /* ---- the child --------------------------------------------------------------------------------------------------- */
 
-static cell_state state_of_word(const char *word) {
-    if (strncmp(word, "done", 4) == 0) return CELL_DONE; /* "done before" too */
-    if (strncmp(word, "started", 7) == 0) return CELL_GOING;
-    return strncmp(word, "failed", 6) == 0 ? CELL_FAILED : CELL_WAITING;
-}
-
-/* "3/9  done         20261122-…  eta=0.1 …": what has become of a run. */
 static void take_line(tui_app *app, sweep_state *s, const char *line) {
-    int number, of, after = 0;
-    char word[24], id[LEDGER_ID];
-    if (sscanf(line, "%d/%d  %23[a-z ]%n", &number, &of, word, &after) < 3 || number < 1 || number > s->count || of != s->count) {
+    sweep_line said;
+    if (!sweep_line_read(line, &said) || said.count != s->count) {
         snprintf(s->said, sizeof s->said, "%s", line);
         return;
     }
-    sweep_cell_result *cell = &s->cells[number - 1];
-    cell->state = state_of_word(word);
-    cell->message[0] = '\0';
-    if (cell->state == CELL_FAILED) {
-        const char *text = strstr(line + after, "  ");
-        text = text ? strstr(text + 2, "  ") : NULL;
-        snprintf(cell->message, sizeof cell->message, "%s", text ? text + 2 : "");
-    }
-    if (sscanf(line + after, "%39s", id) == 1) snprintf(cell->id, sizeof cell->id, "%s", strcmp(id, "-") == 0 ? "" : id);
-    read_value(app, s, cell);
+    s->cells[said.run].known = true;
+    s->cells[said.run].last = said;
+    read_value(app, s, &s->cells[said.run]);
 }
 
 static status start_child(tui_app *app, sweep_state *s, bool list, const char *jobs, report *r) {
     char *arguments[12] = {(char *)"sunder", (char *)"sweep", s->scripts[s->script]};
     int count = 3;
-    arguments[count++] = list ? (char *)"--list" : (char *)"--verbose";
+    arguments[count++] = (char *)"--lines";
+    if (list) arguments[count++] = (char *)"--list";
     if (!list) arguments[count++] = (char *)"-j", arguments[count++] = (char *)jobs;
     if (app->database[0]) arguments[count++] = (char *)"--db", arguments[count++] = app->database;
     child_close(&s->child);
@@ -165,7 +143,7 @@ static void tick_sweep(tui_app *app, void *state, double now) {
     if (s->child.exit_code == 2) app_notice(app, "%s", s->said);
     else if (s->going) app_notice(app, "The sweep has ended%s", s->child.exit_code == 0 ? "" : s->child.exit_code == 130 ? ": stopped" : ": some runs failed");
     for (int i = 0; i < s->count; i++)
-        if (s->cells[i].state == CELL_GOING) s->cells[i].state = CELL_WAITING;
+        if (s->cells[i].last.state == SWEEP_GOING) s->cells[i].last.state = SWEEP_WAITING;
     s->going = s->listing = false;
     app->dirty = true;
 }
@@ -194,10 +172,10 @@ static status choose(tui_app *app, const char *argument, report *r) {
     sweep_state *s = sweep_state_of(app);
     if (s->loaded && !argument[0]) { /* of a grid: the run's frames */
         int run = sweep_run_at(s, s->at[0], s->at[1]);
-        if (run < 0 || !s->cells[run].id[0]) return report_set(r, STATUS_INPUT, "There is no run here yet.");
+        if (run < 0 || !s->cells[run].last.id[0]) return report_set(r, STATUS_INPUT, "There is no run here yet.");
         app_log_nothing(app); /* which cell the cursor was in is not in the log */
         app_show(app, &screen_runs);
-        return app_do(app, "runs.open", s->cells[run].id, r);
+        return app_do(app, "runs.open", s->cells[run].last.id, r);
     }
     if (s->going) return report_set(r, STATUS_INPUT, "A sweep is going on: S stops it.");
     size_t length = strlen(argument);
@@ -250,7 +228,7 @@ static status choose_measure(tui_app *app, const char *argument, report *r) {
     sweep_state *s = sweep_state_of(app);
     static names known;
     known.count = 0;
-    status code = open_ledger(app, s, r);
+    status code = s->l ? STATUS_OK : app_open_ledger(app, &s->l, r);
     if (code == STATUS_OK && argument[0]) code = ledger_check_measure(s->l, argument, r);
     if (code == STATUS_OK) code = ledger_each_measure(s->l, take_name, &known, r);
     if (code != STATUS_OK) return code;

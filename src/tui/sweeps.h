@@ -9,13 +9,10 @@
 
 enum { SWEEPS_SCRIPTS = 64, SWEEPS_NAME = 64 };
 
-typedef enum cell_state { CELL_UNKNOWN, CELL_WAITING, CELL_GOING, CELL_DONE, CELL_FAILED } cell_state;
-
 typedef struct sweep_cell_result {
-    cell_state state;
-    char id[LEDGER_ID]; /* of its run, "" while there is none */
-    char message[160];
-    double value;       /* of the measure; NaN: none */
+    bool known; /* the child has said what has become of it */
+    sweep_line last;
+    double value; /* of the measure; NaN: none */
 } sweep_cell_result;
 
 typedef struct sweep_state {

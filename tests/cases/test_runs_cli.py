@@ -267,10 +267,12 @@ def test_sweep_list():
         open(box.path("little.lua"), "w").write(SWEEP % PULL)
         code, out, err = box.call("sweep", "little.lua", "--list")
         check(code == 0 and out.count("not started") == 4 and box.rows("SELECT count(*) FROM runs")[0][0] == 0, f"nothing is done: {out}{err}")
-        code, out, _ = box.call("sweep", "little.lua", "--verbose", "--threads", "1", "--set", "gamma=5")
-        check(code == 0 and out.count("  started ") == 4 and out.count("/4  done ") == 4, f"starts are told: {out}")
+        code, out, _ = box.call("sweep", "little.lua", "--lines", "--threads", "1", "--set", "gamma=5")
+        check(code == 0 and [line.split("\t")[2] for line in out.splitlines()] == 4 * ["going", "done"], f"a line for each start and end: {out}")
+        ids = sorted(line.split("\t")[3] for line in out.splitlines() if "\tdone\t" in line)
+        check(ids == sorted(ident for ident, in box.rows("SELECT id FROM runs_view")), f"with the runs' ids: {out}")
         code, out, err = box.call("sweep", "little.lua", "--threads", "1")
-        check(code == 0 and "  started " not in out and out.count("/4  done ") == 4, f"unless nobody asked: {code} {out}{err}")
+        check(code == 0 and out.count("/4  done ") == 4, f"and for people one an end: {code} {out}{err}")
         check(box.call("sweep", "little.lua", "--list")[1].count("  done before  ") == 4, "all is done")
 
 

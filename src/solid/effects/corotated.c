@@ -6,7 +6,7 @@
  * for every F, continuous through collapse, and an inverted particle is driven back along its thinnest axis.
  * The plain Lamé λ gives (E, ν) as the linear response. Damage scales Ψμ always and Ψλ only in tension (J ≥ 1), as in `elastic`. */
 #include "base/eigen.h"
-#include "solid/moduli.h"
+#include "solid/elasticity.h"
 #include "solid/stretch.h"
 
 enum { MU, LAMBDA, WAVE_LAMBDA };
@@ -19,11 +19,6 @@ static void constants(const effect_values *all, const solid_definition *d, bool 
     out[MU] = (real)mu;
     out[LAMBDA] = (real)lambda;
     out[WAVE_LAMBDA] = (real)fmax(lambda, 0); /* negative where nu is: then it stiffens no wave */
-}
-
-/* g₊ λ: g in tension, 1 in compression. */
-SIMD_INLINE vec degraded_lambda(vec J, vec g, real lambda) {
-    return lambda * vec_select(J >= 1, g, vec_all(1));
 }
 
 /* The s_i, one of the smallest negated where J < 0. */
@@ -64,10 +59,6 @@ SIMD_INLINE mat3v rotation(mat3v F) {
         vec_fma(large.c, m1.z, vec_fma(middle.c, m2.z, least.c * m3.z))
     return (mat3v){ROW(x), ROW(y), ROW(z)};
 #undef ROW
-}
-
-SIMD_INLINE vec stiffened(const tile_work *w, int k, int part, vec value) {
-    return scaled(w->state, w->state->stiffness_scale, w->tile->first_pack + k, part, value);
 }
 
 static void stress(tile_work *w) {
@@ -153,35 +144,12 @@ static double corotated_square(const double F[9], double J) {
     return sum;
 }
 
-/* In f64 particle by particle, as in `elastic`. */
 static void energy(tile_work *w) {
-    const solid_field *F_field = &w->state->fields[FIELD_DEFORMATION];
-    double mu = (double)w->constants[MU], lambda = (double)w->constants[LAMBDA];
-    for (int p = 0; p < w->tile->count; p++) {
-        int k = p / PACK, lane = p % PACK;
-        double F[9];
-        for (int c = 0; c < 9; c++) F[c] = (double)field_at(F_field, w->tile->first_pack + k, c, 0)[lane];
-        double J = F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
-        double g = (double)w->scratch->degradation[k * PACK + lane], g_volume = J >= 1 ? g : 1;
-        double density = g * mu * corotated_square(F, J) + g_volume * 0.5 * lambda * (J - 1) * (J - 1);
-        density *= scale_of(w->state, w->state->stiffness_scale, w->tile->first_pack + k, lane);
-        w->energy[0] += density * (double)field_at(&w->state->fields[FIELD_VOLUME], w->tile->first_pack + k, 0, 0)[lane];
-    }
+    elastic_energy(w, w->constants[MU], w->constants[LAMBDA], corotated_square);
 }
 
 static const parameter parameters[] = {
-    [ELASTIC_KEY_E] = {.key = "E", .unit = "mass/(length time^2)", .doc = "Young's modulus of the matrix", .minimum = 1e-12, .scale = "stiffness_scale",
-                       .maximum = 1e18, .fallback = {1e4}, .live = true, .logarithmic = true, .required = true},
-    [ELASTIC_KEY_NU] = {.key = "nu", .unit = "1", .doc = "Poisson's ratio", .minimum = -0.999, .maximum = 0.4999, .fallback = {0.3},
-                        .live = true},
-};
-
-static const effect_field fields[] = {
-    {.key = "stiffness_scale", .components = 1, .unit = "1", .written = true, .doc = "E over its material's, where it varies"},
-};
-
-static const effect_measure measures[] = {
-    {"elastic", "mass length^2/time^2", "stored energy of the matrix"},
+    ELASTIC_PARAMETERS,
 };
 
 static const solid_stages stages = {.constants = constants, .stress = stress, .wave = wave, .energy = energy, .piola = piola, .stiffness = stiffness};
@@ -189,5 +157,5 @@ static const solid_stages stages = {.constants = constants, .stress = stress, .w
 const effect SOLID_EFFECT(corotated) = {
     .name = "corotated", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "fixed-corotated elasticity of the matrix, instead of elastic",
     .reference = "Stomakhin et al. 2012; METHOD.md section 1", .parameters = parameters, .parameter_count = 2,
-    .fields = fields, .field_count = 1, .measures = measures, .measure_count = 1, .provides = ELASTICITY, .stages = &stages,
+    ELASTIC_TABLES, .stages = &stages,
 };

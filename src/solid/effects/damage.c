@@ -5,8 +5,7 @@
  *     Φ = tr(A σ⁺ A σ⁺)/σc²,  A = I + α1 (R a1)(R a1)ᵀ + α2 (R a2)(R a2)ᵀ
  *     H ← min(max(H, ζ⟨Φ − 1⟩), 1e6),  d ← min(1, d + Δt/η ⟨(1 − d) H − (d − l0² Δd)⟩)
  * A's eigenvalues lie in [0, 1], so Φ ≤ |σ|²/σc²: where that bound cannot raise H, nothing is decomposed. */
-#include "solid/moduli.h"
-#include "solid/tensor.h"
+#include "solid/damage_model.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -15,7 +14,6 @@ enum { ETA_INVERSE, CRITICAL_INVERSE2, ALPHA1, ALPHA2, RESIDUAL, ZETA, LENGTH2, 
 enum { KEY_SIGMA_C, KEY_BREAK_STRETCH, KEY_ETA, KEY_ALPHA, KEY_ALPHA2, KEY_RESIDUAL, KEY_ZETA, KEY_LENGTH_SCALE, KEY_FORM,
        KEY_TOLERANCE, KEY_AS_SHIPPED, KEY_COUNT };
 
-#define DRIVING_LIMIT ((real)1e6)
 #define OVERSHOOT ((real)1e-3) /* in d, that a step may leave behind */
 #define BOUND_MARGIN ((real)0.999) /* the early out's bound holds up to round-off */
 
@@ -23,8 +21,7 @@ static void constants(const effect_values *all, const solid_definition *d, bool 
     const effect_values *own = &all[EFFECT_damage];
     double mu = 0, lambda = 0, lame_lambda;
     elastic_model model = solid_elastic_moduli(all, &mu, &lambda, &lame_lambda);
-    double sigma_c = own->value[KEY_SIGMA_C][0], length = own->value[KEY_LENGTH_SCALE][0];
-    if (length == 0) length = 0.5 * d->dx;
+    double sigma_c = own->value[KEY_SIGMA_C][0], length = damage_half_width(own->value[KEY_LENGTH_SCALE][0], d);
     out[ETA_INVERSE] = own->value[KEY_ETA][0] > 0 ? (real)(1 / own->value[KEY_ETA][0]) : 0; /* implicit: not used */
     out[CRITICAL_INVERSE2] = (real)(1 / (sigma_c * sigma_c));
     out[ALPHA1] = (real)own->value[KEY_ALPHA][0];
@@ -48,21 +45,14 @@ static void declare(solid *s, int material, const effect_values *all) {
     s->material_damaged[material] = true;
     s->material_implicit[material] = own->value[KEY_FORM][0] != 0;
     if (!s->material_implicit[material]) return;
-    double length = own->value[KEY_LENGTH_SCALE][0] > 0 ? own->value[KEY_LENGTH_SCALE][0] : 0.5 * s->definition.dx;
+    double length = damage_half_width(own->value[KEY_LENGTH_SCALE][0], &s->definition);
     s->implicit_on = true;
     s->implicit_materials[material] = (implicit_material){(real)own->value[KEY_ETA][0], (real)(length * length)};
     s->implicit_tolerance = fmin(s->implicit_tolerance, own->value[KEY_TOLERANCE][0]);
 }
 
-/* g(d) = (1 − d)² (1 − r) + r */
 static void degrade(tile_work *w) {
-    const solid_field *damage = &w->state->fields[w->state->damage_field];
-    real r = w->constants[RESIDUAL];
-    for (int k = 0; k < w->tile->pack_count; k++)
-        for (int part = 0; part < PACK_PARTS; part++) {
-            vec left = 1 - vec_load(field_at(damage, w->tile->first_pack + k, 0, part));
-            vec_store(scratch_at(w->scratch->degradation, 1, k, 0, part), vec_fma(left * left, vec_all(1 - r), vec_all(r)));
-        }
+    damage_degrade(w, w->constants[RESIDUAL]);
 }
 
 /* A in the axes n_i of the stress: I + Σ α (R a)(R a)ᵀ, R a = Σ (n_i · F a)/s_i n_i. */
@@ -152,7 +142,7 @@ SIMD_INLINE vec history(const tile_work *w, int32_t pack, int part, vec d, vec H
     vec_mask open = (bound > BOUND_MARGIN * (1 + H * (1 / c[ZETA]))) & (J > 0) & (d < 1);
     if (!vec_any(open)) return H;
     vec phi = relative_load(w, pack, part, driving_stress(w, pack, part, F, b, J, pressure) * c[CRITICAL_INVERSE2]);
-    vec raised = vec_min(vec_max(c[ZETA] * (phi - 1), H), vec_all(DRIVING_LIMIT));
+    vec raised = vec_min(vec_max(c[ZETA] * (phi - 1), H), vec_all(DAMAGE_DRIVING_LIMIT));
     return vec_select(open, raised, H);
 }
 
@@ -275,12 +265,10 @@ static const parameter parameters[KEY_COUNT] = {
                    .doc = "-1: stress along the first fibres does no damage, cracks run along them; 0: isotropic",
                    .minimum = -1, .maximum = 0, .live = true},
     [KEY_ALPHA2] = {.key = "alpha2", .unit = "1", .doc = "the same for the second family", .minimum = -1, .live = true},
-    [KEY_RESIDUAL] = {.key = "residual", .unit = "1", .doc = "stiffness that a broken particle keeps", .maximum = 1,
-                      .fallback = {0.01}, .live = true},
+    [KEY_RESIDUAL] = DAMAGE_RESIDUAL(1),
     [KEY_ZETA] = {.key = "zeta", .unit = "1", .doc = "slope of damage above the critical stress", .minimum = 1e-6,
                   .maximum = 1e6, .fallback = {1}, .live = true, .logarithmic = true},
-    [KEY_LENGTH_SCALE] = {.key = "length_scale", .unit = "length", .doc = "half width of a crack; 0: half the grid spacing",
-                          .maximum = 1e9, .why_not = "cracks already have its width"},
+    [KEY_LENGTH_SCALE] = DAMAGE_LENGTH_SCALE,
     [KEY_FORM] = {.key = "form", .unit = "1", .doc = "explicit: cheap, limits the time step by eta; implicit: solved on the grid, any eta",
                   .kind = PARAMETER_CHOICE, .maximum = 1, .choices = form_choices,
                   .why_not = "the grid is made for one form"},
@@ -292,18 +280,11 @@ static const parameter parameters[KEY_COUNT] = {
 };
 
 static const effect_field fields[] = {
-    {.key = "damage", .components = 1, .unit = "1", .written = true, .doc = "0 whole, 1 broken"},
-    {.key = "damage_history", .components = 1, .unit = "1", .written = false, .doc = "largest driving force so far"},
+    DAMAGE_FIELDS,
     {.key = "fibre", .components = 3, .unit = "1", .written = true, .doc = "first fibre direction at rest, unit"},
     {.key = "fibre2", .components = 3, .unit = "1", .written = true, .doc = "second fibre direction at rest, unit"},
     {.key = "toughness_scale", .components = 1, .unit = "1", .written = true, .doc = "sigma_c over its material's, where it varies"},
     {.key = "viscosity_scale", .components = 1, .unit = "1", .written = true, .doc = "eta over its material's, where it varies"},
-};
-
-static const effect_measure measures[] = {
-    {"damage_mean", "1", "mean damage"},
-    {"damage_max", "1", "largest damage"},
-    {"broken_fraction", "1", "fraction of particles over 0.9"},
 };
 
 static const solid_stages stages = {.constants = constants, .declare = declare, .degrade = degrade, .solve = implicit_solve, .update = update, .hasten = hasten};
@@ -311,6 +292,5 @@ static const solid_stages stages = {.constants = constants, .declare = declare, 
 const effect SOLID_EFFECT(damage) = {
     .name = "damage", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "anisotropic damage of the matrix",
     .reference = "AnisoMPM sections 3, 4.3; METHOD.md section 2", .parameters = parameters, .parameter_count = KEY_COUNT,
-    .fields = fields, .field_count = 6, .measures = measures, .measure_count = 3, .provides = "damage model", .resolve = resolve, .needs = ELASTICITY,
-    .stages = &stages,
+    .fields = fields, .field_count = 6, DAMAGE_TABLES, .resolve = resolve, .stages = &stages,
 };

@@ -4,8 +4,7 @@
  * F = QR; Σ r_ij² = |F|², so no decomposition is needed. Because cof F Fᵀ = J I, the Kirchhoff stress is
  *     τ = P Fᵀ = μ F Fᵀ + (λ (J − 1) − μ) J I.
  * Polynomial: defined for every F, inverted ones included. Damage scales Ψμ always and Ψλ only in tension (J ≥ 1). */
-#include "solid/moduli.h"
-#include "solid/tensor.h"
+#include "solid/elasticity.h"
 
 enum { MU, LAMBDA };
 
@@ -17,18 +16,9 @@ static void constants(const effect_values *all, const solid_definition *d, bool 
     out[LAMBDA] = (real)lambda;
 }
 
-/* g where the λ term is in tension, 1 where it is in compression. */
-SIMD_INLINE vec volumetric_degradation(vec J, vec g) {
-    return vec_select(J >= 1, g, vec_all(1));
-}
-
 /* g₊ λ (J − 1) − g μ, what multiplies cof F in P and J I in τ. */
 SIMD_INLINE vec cofactor_weight(const tile_work *w, vec J, vec g) {
     return vec_fma(volumetric_degradation(J, g) * w->constants[LAMBDA], J - 1, -(g * w->constants[MU]));
-}
-
-SIMD_INLINE vec stiffened(const tile_work *w, int k, int part, vec value) {
-    return scaled(w->state, w->state->stiffness_scale, w->tile->first_pack + k, part, value);
 }
 
 static void stress(tile_work *w) {
@@ -92,41 +82,22 @@ static void wave(tile_work *w) {
         }
 }
 
-/* In f64 particle by particle: |F|² − 3 and J − 1 cancel near rest. */
+static double shear_energy(const double F[9], double J) {
+    double square = 0;
+    for (int c = 0; c < 9; c++) square += F[c] * F[c];
+    return 0.5 * (square - 3) - (J - 1);
+}
+
 static void energy(tile_work *w) {
-    const solid_field *F_field = &w->state->fields[FIELD_DEFORMATION];
-    double mu = (double)w->constants[MU], lambda = (double)w->constants[LAMBDA];
-    for (int p = 0; p < w->tile->count; p++) {
-        int k = p / PACK, lane = p % PACK;
-        double F[9];
-        for (int c = 0; c < 9; c++) F[c] = (double)field_at(F_field, w->tile->first_pack + k, c, 0)[lane];
-        double J = F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
-        double square = 0;
-        for (int c = 0; c < 9; c++) square += F[c] * F[c];
-        double g = (double)w->scratch->degradation[k * PACK + lane], g_volume = J >= 1 ? g : 1;
-        double density = g * mu * (0.5 * (square - 3) - (J - 1)) + g_volume * 0.5 * lambda * (J - 1) * (J - 1);
-        density *= scale_of(w->state, w->state->stiffness_scale, w->tile->first_pack + k, lane);
-        w->energy[0] += density * (double)field_at(&w->state->fields[FIELD_VOLUME], w->tile->first_pack + k, 0, 0)[lane];
-    }
+    elastic_energy(w, w->constants[MU], w->constants[LAMBDA], shear_energy);
 }
 
 static const char *const lame_choices[] = {"consistent", "paper", NULL};
 
 static const parameter parameters[] = {
-    [ELASTIC_KEY_E] = {.key = "E", .unit = "mass/(length time^2)", .doc = "Young's modulus of the matrix", .minimum = 1e-12, .scale = "stiffness_scale",
-               .maximum = 1e18, .fallback = {1e4}, .live = true, .logarithmic = true, .required = true},
-    [ELASTIC_KEY_NU] = {.key = "nu", .unit = "1", .doc = "Poisson's ratio", .minimum = -0.999, .maximum = 0.4999, .fallback = {0.3},
-                .live = true},
+    ELASTIC_PARAMETERS,
     [ELASTIC_KEY_LAME] = {.key = "lame", .unit = "1", .doc = "consistent: (E, nu) is the linear response; paper: plain Lamé lambda",
                   .kind = PARAMETER_CHOICE, .maximum = 1, .choices = lame_choices, .live = true},
-};
-
-static const effect_field fields[] = {
-    {.key = "stiffness_scale", .components = 1, .unit = "1", .written = true, .doc = "E over its material's, where it varies"},
-};
-
-static const effect_measure measures[] = {
-    {"elastic", "mass length^2/time^2", "stored energy of the matrix"},
 };
 
 static const solid_stages stages = {.constants = constants, .stress = stress, .wave = wave, .energy = energy, .piola = piola, .stiffness = stiffness};
@@ -134,5 +105,5 @@ static const solid_stages stages = {.constants = constants, .stress = stress, .w
 const effect SOLID_EFFECT(elastic) = {
     .name = "elastic", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "isotropic elasticity of the matrix",
     .reference = "AnisoMPM section 5; METHOD.md section 1", .parameters = parameters, .parameter_count = 3,
-    .fields = fields, .field_count = 1, .measures = measures, .measure_count = 1, .provides = ELASTICITY, .stages = &stages,
+    ELASTIC_TABLES, .stages = &stages,
 };

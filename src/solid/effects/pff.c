@@ -3,7 +3,7 @@
  *     (4 l0 (1 − r) H/G + 1) c − 4 l0² Δc = 1,   or ċ = −M × (left − right) with a mobility M.
  * Written for d this is the implicit damage system with D̃ = 4 l0 (1 − r) H/G, l0² four times as large and η = 1/M (0 without a
  * mobility): the same solver serves both. */
-#include "solid/moduli.h"
+#include "solid/damage_model.h"
 #include "solid/stretch.h"
 
 #include <math.h>
@@ -11,17 +11,12 @@
 enum { DRIVING, RESIDUAL, MU, LAMBDA, COROTATED, FROZEN };
 enum { KEY_TOUGHNESS, KEY_LENGTH_SCALE, KEY_MOBILITY, KEY_RESIDUAL, KEY_TOLERANCE, KEY_COUNT };
 
-#define DRIVING_LIMIT ((real)1e6)
-
-static double half_width(const effect_values *own, const solid_definition *d) {
-    return own->value[KEY_LENGTH_SCALE][0] > 0 ? own->value[KEY_LENGTH_SCALE][0] : 0.5 * d->dx;
-}
 
 static void constants(const effect_values *all, const solid_definition *d, bool protects, real out[CONSTANTS]) {
     const effect_values *own = &all[EFFECT_pff];
     double mu = 0, lambda = 0, lame_lambda, r = own->value[KEY_RESIDUAL][0];
     elastic_model model = solid_elastic_moduli(all, &mu, &lambda, &lame_lambda);
-    out[DRIVING] = (real)(4 * half_width(own, d) * (1 - r) / own->value[KEY_TOUGHNESS][0]);
+    out[DRIVING] = (real)(4 * damage_half_width(own->value[KEY_LENGTH_SCALE][0], d) * (1 - r) / own->value[KEY_TOUGHNESS][0]);
     out[RESIDUAL] = (real)r;
     out[MU] = (real)mu;
     out[LAMBDA] = (real)lambda;
@@ -31,21 +26,14 @@ static void constants(const effect_values *all, const solid_definition *d, bool 
 
 static void declare(solid *s, int material, const effect_values *all) {
     const effect_values *own = &all[EFFECT_pff];
-    double length = half_width(own, &s->definition), mobility = own->value[KEY_MOBILITY][0];
+    double length = damage_half_width(own->value[KEY_LENGTH_SCALE][0], &s->definition), mobility = own->value[KEY_MOBILITY][0];
     s->material_damaged[material] = s->material_implicit[material] = s->implicit_on = true;
     s->implicit_materials[material] = (implicit_material){(real)(mobility > 0 ? 1 / mobility : 0), (real)(4 * length * length)};
     s->implicit_tolerance = fmin(s->implicit_tolerance, own->value[KEY_TOLERANCE][0]);
 }
 
-/* g(d) = (1 − d)² (1 − r) + r */
 static void degrade(tile_work *w) {
-    const solid_field *damage = &w->state->fields[w->state->damage_field];
-    real r = w->constants[RESIDUAL];
-    for (int k = 0; k < w->tile->pack_count; k++)
-        for (int part = 0; part < PACK_PARTS; part++) {
-            vec c = 1 - vec_load(field_at(damage, w->tile->first_pack + k, 0, part));
-            vec_store(scratch_at(w->scratch->degradation, 1, k, 0, part), vec_fma(c * c, vec_all(1 - r), vec_all(r)));
-        }
+    damage_degrade(w, w->constants[RESIDUAL]);
 }
 
 /* Ψ⁺: Ψμ + Ψλ in tension (J ≥ 1), Ψμ in compression, as the stress is split. */
@@ -78,32 +66,23 @@ static void update(tile_work *w) {
             vec driving = c[DRIVING] * tensile_energy(c, mat3v_load(&w->state->fields[FIELD_DEFORMATION], pack, part));
             driving = scaled(w->state, w->state->stiffness_scale, pack, part, driving);
             vec_store(field_at(damage, pack, 0, part), implicit_damage(d, H, spread, vec_all(rate)));
-            vec_store(field_at(histories, pack, 0, part), vec_min(vec_max(driving, H), vec_all(DRIVING_LIMIT)));
+            vec_store(field_at(histories, pack, 0, part), vec_min(vec_max(driving, H), vec_all(DAMAGE_DRIVING_LIMIT)));
         }
 }
 
 static const parameter parameters[KEY_COUNT] = {
     [KEY_TOUGHNESS] = {.key = "toughness", .unit = "mass/time^2", .doc = "energy that a crack takes per area", .minimum = 1e-18,
                        .maximum = 1e18, .fallback = {1}, .live = true, .logarithmic = true, .required = true},
-    [KEY_LENGTH_SCALE] = {.key = "length_scale", .unit = "length", .doc = "half width of a crack; 0: half the grid spacing", .maximum = 1e9,
-                          .why_not = "cracks already have its width"},
+    [KEY_LENGTH_SCALE] = DAMAGE_LENGTH_SCALE,
     [KEY_MOBILITY] = {.key = "mobility", .unit = "1/time", .doc = "how fast the phase field follows; 0: at once", .maximum = 1e12,
                       .live = true, .logarithmic = true},
-    [KEY_RESIDUAL] = {.key = "residual", .unit = "1", .doc = "stiffness that a broken particle keeps", .maximum = 0.999, .fallback = {0.01},
-                      .live = true},
+    [KEY_RESIDUAL] = DAMAGE_RESIDUAL(0.999),
     [KEY_TOLERANCE] = {.key = "tolerance", .unit = "1", .doc = "relative residual of the solve on the grid", .minimum = 1e-14, .maximum = 0.1,
                        .fallback = {1e-4}, .live = true, .logarithmic = true},
 };
 
 static const effect_field fields[] = {
-    {.key = "damage", .components = 1, .unit = "1", .written = true, .doc = "0 whole, 1 broken: one less the phase field"},
-    {.key = "damage_history", .components = 1, .unit = "1", .written = false, .doc = "largest driving force so far"},
-};
-
-static const effect_measure measures[] = {
-    {"damage_mean", "1", "mean damage"},
-    {"damage_max", "1", "largest damage"},
-    {"broken_fraction", "1", "fraction of particles over 0.9"},
+    DAMAGE_FIELDS,
 };
 
 static const solid_stages stages = {.constants = constants, .declare = declare, .degrade = degrade, .solve = implicit_solve, .update = update};
@@ -111,6 +90,5 @@ static const solid_stages stages = {.constants = constants, .declare = declare, 
 const effect SOLID_EFFECT(pff) = {
     .name = "pff", .engine = ENGINE_SOLID, .scope = SCOPE_MATERIAL, .doc = "isotropic phase-field fracture (PFF-MPM)",
     .reference = "Wolper et al. 2019; METHOD.md section 2", .parameters = parameters, .parameter_count = KEY_COUNT,
-    .fields = fields, .field_count = 2, .measures = measures, .measure_count = 3, .provides = "damage model", .needs = ELASTICITY,
-    .stages = &stages,
+    .fields = fields, .field_count = 2, DAMAGE_TABLES, .stages = &stages,
 };

@@ -8,6 +8,24 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Bodies: a cube of edge 1, a bar of 4 × 1 × 1 along x; about the origin. */
+static inline const shape *test_cube(arena *a) {
+    return shape_box(a, (const double[]){-0.5, -0.5, -0.5}, (const double[]){0.5, 0.5, 0.5});
+}
+
+static inline const shape *test_bar(arena *a) {
+    return shape_box(a, (const double[]){-2, -0.5, -0.5}, (const double[]){2, 0.5, 0.5});
+}
+
+/* Grips that hold all with |x| > `from` and part at `speed` each. */
+static inline void test_pull(scene *s, double from, double speed) {
+    for (int side = -1; side <= 1; side += 2) {
+        double low[3] = {side < 0 ? -3 : from, -2, -2}, high[3] = {side < 0 ? -from : 3, 2, 2};
+        s->grips[s->grip_count++] = (scene_grip){.shape = shape_box(s->memory, low, high), .stop = HUGE_VAL,
+                                                 .velocity = {.outputs = 3, .constant = {side * speed, 0, 0}}};
+    }
+}
+
 /* A scene with one material of the given elasticity and one body; no gravity, no boundaries. */
 static inline scene *test_scene(const shape *(*make)(arena *), double E, double nu, double density) {
     scene *s = scene_create();

@@ -8,56 +8,17 @@
  * - Damage scales Ψμ always, Ψλ in tension only; its driving force is that of this model's Cauchy stress.
  * - ρ0 c² bounds the acoustic tensor by second differences of Ψ (largest ratio ≤ 1.001), inverted F among them. */
 #include "check.h"
+#include "verify/matrices.h"
 #include "verify/solid_point.h"
 
 #include "base/eigen.h"
-#include "base/random.h"
 
 static const double E = 3, NU = 0.3, MU = 3 / 2.6, LAMBDA = 3 * 0.3 / (1.3 * 0.4);
-enum { HISTORY_FIELD = 6, KEY_GAMMA = 0, KEY_GAMMA2, KEY_SIGMA_C = 0, KEY_BREAK_STRETCH, KEY_ALPHA = 3, KEY_RESIDUAL = 5 };
-
-static double uniform(uint64_t stream, uint64_t i) {
-    return 2 * random_unit(34, stream, i) - 1;
-}
-
-static void random_matrix(uint64_t i, double scale, double F[9]) {
-    for (int c = 0; c < 9; c++) F[c] = (c % 4 == 0 && scale < 1) + scale * uniform((uint64_t)c, i);
-}
-
-static double determinant(const double F[9]) {
-    return F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
-}
-
-static double norm(const double *v, int n) {
-    double sum = 0;
-    for (int i = 0; i < n; i++) sum += v[i] * v[i];
-    return sqrt(sum);
-}
-
-static void multiply(const double A[9], const double B[9], double C[9]) {
-    double out[9];
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            out[3 * i + j] = 0;
-            for (int k = 0; k < 3; k++) out[3 * i + j] += A[3 * i + k] * B[3 * k + j];
-        }
-    memcpy(C, out, sizeof out);
-}
+enum { SEED = 34, HISTORY_FIELD = 6, KEY_GAMMA = 0, KEY_GAMMA2, KEY_SIGMA_C = 0, KEY_BREAK_STRETCH, KEY_ALPHA = 3, KEY_RESIDUAL = 5 };
 
 static void multiply_transposed(const double A[9], const double B[9], double C[9]) {
     const double Bt[9] = {B[0], B[3], B[6], B[1], B[4], B[7], B[2], B[5], B[8]};
     multiply(A, Bt, C);
-}
-
-/* A rotation from a random unit quaternion. */
-static void random_rotation(uint64_t i, double R[9]) {
-    double q[4], n;
-    for (int c = 0; c < 4; c++) q[c] = uniform(100 + (uint64_t)c, i);
-    n = norm(q, 4);
-    double w = q[0] / n, x = q[1] / n, y = q[2] / n, z = q[3] / n;
-    const double r[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z), 1 - 2 * (x * x + z * z),
-                         2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
-    memcpy(R, r, sizeof r);
 }
 
 /* b = F Fᵀ, its eigenvectors, and the stretches, descending; the last negative where J < 0. */
@@ -95,7 +56,7 @@ static void stress_is_the_gradient_of_energy(void) {
     int inverted = 0;
     for (uint64_t i = 0; i < 6000; i++) {
         double F[9], P[9], tau[9], s[3], axis[3][3], difference = 0;
-        random_matrix(i, i % 2 ? 1.5 : 0.4, F);
+        random_matrix(SEED, i, i % 2 ? 1.5 : 0.4, F);
         signed_stretches(F, s, axis);
         if (s[1] + s[2] < 0.2) continue; /* the differences' own error is h²/(s2 + s3)² */
         for (int c = 0; c < 9; c++) {
@@ -119,24 +80,12 @@ static void stress_is_the_gradient_of_energy(void) {
     free(p);
 }
 
-/* R of F = R S by Newton's iteration R ← (R + R⁻ᵀ)/2. */
-static void polar_rotation(const double F[9], double R[9]) {
-    memcpy(R, F, 9 * sizeof *R);
-    for (int n = 0; n < 100; n++) {
-        double J = determinant(R);
-        const double C[9] = {R[4] * R[8] - R[5] * R[7], R[5] * R[6] - R[3] * R[8], R[3] * R[7] - R[4] * R[6],
-                             R[2] * R[7] - R[1] * R[8], R[0] * R[8] - R[2] * R[6], R[1] * R[6] - R[0] * R[7],
-                             R[1] * R[5] - R[2] * R[4], R[2] * R[3] - R[0] * R[5], R[0] * R[4] - R[1] * R[3]};
-        for (int c = 0; c < 9; c++) R[c] = 0.5 * (R[c] + C[c] / J);
-    }
-}
-
 static void stress_is_the_formula(void) {
     material_point *p = corotated_point(0);
     double worst = 0;
     for (uint64_t i = 0; i < 20000; i++) {
         double F[9], R[9], D[9], tau[9];
-        random_matrix(i, i % 2 ? 1.5 : 0.4, F);
+        random_matrix(SEED, i, i % 2 ? 1.5 : 0.4, F);
         double J = determinant(F);
         if (J < 0.01) continue;
         polar_rotation(F, R);
@@ -155,8 +104,8 @@ static void energy_and_stress_are_objective(void) {
     double worst = 0, worst_stress = 0;
     for (uint64_t i = 0; i < 10000; i++) {
         double R[9], F[9], RF[9], tau[9], turned[9];
-        random_rotation(i, R);
-        random_matrix(i, 1.5, F);
+        random_rotation(SEED, i, R);
+        random_matrix(SEED, i, 1.5, F);
         double before = energy_at(p, F);
         full_stress(p, F, tau);
         multiply(R, F, RF);
@@ -197,8 +146,8 @@ static void hard_states_are_finite(void) {
     for (size_t k = 0; k < sizeof spectra / sizeof *spectra; k++)
         for (uint64_t i = 0; i < 200; i++) {
             double R[9], Q[9], F[9], tau[9], J = spectra[k][0] * spectra[k][1] * spectra[k][2], trace = 0, expected = 3 * LAMBDA * (J - 1) * J;
-            random_rotation(2 * i, R);
-            random_rotation(2 * i + 1, Q);
+            random_rotation(SEED, 2 * i, R);
+            random_rotation(SEED, 2 * i + 1, Q);
             for (int c = 0; c < 9; c++) R[c] *= spectra[k][c % 3];
             multiply(R, Q, F);
             full_stress(p, F, tau);
@@ -263,9 +212,9 @@ static void damage_is_driven_by_this_stress(void) {
     p->values[EFFECT_damage].value[KEY_SIGMA_C][0] = sigma_c;
     for (uint64_t i = 0; i < 20000; i++) {
         double F[9], a[3], alpha = -random_unit(7, 0, i);
-        random_matrix(i, i % 2 ? 0.5 : 0.15, F);
+        random_matrix(SEED, i, i % 2 ? 0.5 : 0.15, F);
         if (determinant(F) < 0.1) continue;
-        for (int c = 0; c < 3; c++) a[c] = uniform(20 + (uint64_t)c, i);
+        for (int c = 0; c < 3; c++) a[c] = random_sign(SEED, 20 + (uint64_t)c, i);
         double length = norm(a, 3);
         for (int c = 0; c < 3; c++) a[c] /= length;
         p->values[EFFECT_damage].value[KEY_ALPHA][0] = alpha;
@@ -316,13 +265,13 @@ static double largest_ratio(material_point *p, bool inverted, int *used) {
     double worst = 0, h = 1e-5;
     for (uint64_t i = 0; i < 4000; i++) {
         double F[9], N[9], R[9], s[3], axis[3][3];
-        random_matrix(i, 0.6, F);
+        random_matrix(SEED, i, 0.6, F);
         if (inverted)
             for (int c = 0; c < 3; c++) F[c] = -F[c];
         signed_stretches(F, s, axis);
         if ((s[2] < 0) != inverted || fabs(s[2]) < 0.05 || s[1] + s[2] < 0.02) continue;
-        random_rotation(i + 77777, N);
-        random_rotation(i, R);
+        random_rotation(SEED, i + 77777, N);
+        random_rotation(SEED, i, R);
         const double a1[3] = {R[0], R[3], R[6]}, a2[3] = {R[1], R[4], R[7]};
         point_set(p, 7, a1);
         point_set(p, 8, a2);

@@ -9,12 +9,8 @@
 #include "base/memory.h"
 #include "solid/effects/list.h"
 
-static const shape *bar(arena *a) {
-    return shape_box(a, (const double[]){-2, -0.5, -0.5}, (const double[]){2, 0.5, 0.5});
-}
-
 static scene *bar_scene(bool elastic, bool corotated) {
-    scene *s = test_scene(bar, 100, 0.3, 1);
+    scene *s = test_scene(test_bar, 100, 0.3, 1);
     s->materials[0].effects[EFFECT_elastic].on = elastic;
     if (!corotated) return s;
     test_set(s, "corotated", "E", 100);
@@ -47,11 +43,7 @@ static solid_measures stretch_slowly(bool corotated, int precision) {
     scene *s = bar_scene(!corotated, corotated);
     s->particles = 2000;
     s->transfer = TRANSFER_RPIC;
-    for (int side = -1; side <= 1; side += 2) {
-        double low[3] = {side < 0 ? -3 : 1.75, -2, -2}, high[3] = {side < 0 ? -1.75 : 3, 2, 2};
-        s->grips[s->grip_count++] = (scene_grip){.shape = shape_box(s->memory, low, high), .stop = HUGE_VAL,
-                                                 .velocity = {.outputs = 3, .constant = {2e-3 * side, 0, 0}}};
-    }
+    test_pull(s, 1.75, 2e-3);
     simulation *sim = test_simulation(s, precision, "auto", 2);
     report r;
     simulation_measures m;

@@ -118,10 +118,6 @@ static void notches_break_what_lies_inside(void) {
     scene_destroy(s);
 }
 
-static const shape *cube(arena *a) {
-    return shape_box(a, (const double[]){-0.5, -0.5, -0.5}, (const double[]){0.5, 0.5, 0.5});
-}
-
 static status swell(void *context, const double *x, int inputs, double *v, int outputs, report *r) {
     (void)context, (void)inputs, (void)outputs, (void)r;
     for (int c = 0; c < 3; c++) v[c] = 0.3 * x[c];
@@ -130,7 +126,7 @@ static status swell(void *context, const double *x, int inputs, double *v, int o
 
 /* A cube that swells: D̃ grows from the rim of nothing to something, everywhere alike up to the free faces. */
 static scene *swelling_cube(bool implicit, double eta) {
-    scene *s = test_scene(cube, 10, 0.3, 1);
+    scene *s = test_scene(test_cube, 10, 0.3, 1);
     s->particles = 1000;
     s->bodies[0].velocity = (scene_function){.outputs = 3, .call = swell};
     test_set(s, "damage", "sigma_c", 0.5);
@@ -312,7 +308,7 @@ static void no_viscosity_is_the_rate_independent_limit(void) {
 /* A cube held at F = s I under the phase field: d = K/(1 + K), K = 4 l0 (1 − r) Ψ⁺/G, one solve after Ψ⁺ is known; with a mobility M, after
  * n steps of Δt, d = K/(1 + K) (1 − (1 + (1 + K) M Δt)⁻ⁿ) (backward Euler of ċ = −M × residual). */
 static double phase_field_damage(double stretch, double mobility, int steps) {
-    scene *s = test_scene(cube, 10, 0.3, 1e6); /* heavy: it does not move within the steps */
+    scene *s = test_scene(test_cube, 10, 0.3, 1e6); /* heavy: it does not move within the steps */
     s->particles = 1000;
     test_set(s, "pff", "toughness", 2);
     test_set(s, "pff", "length_scale", 0.05);

@@ -12,10 +12,6 @@
 
 static const double DX = 0.1, END = 0.2;
 
-static const shape *cube(arena *a) {
-    return shape_box(a, (const double[]){-0.5, -0.5, -0.5}, (const double[]){0.5, 0.5, 0.5});
-}
-
 static status torn_in_flight(void *context, const double *x, int inputs, double *v, int outputs, report *r) {
     (void)context, (void)inputs, (void)outputs, (void)r;
     v[0] = 1 + 2 * sin(M_PI * x[0]), v[1] = 0.5 + 0.3 * x[2], v[2] = -0.7;
@@ -54,7 +50,7 @@ static void check_growth(simulation *sim, double *last) {
 
 /* d of all particles at the end; free with memory_free. */
 static double *tear(bool two_passes, int steps, int64_t *count) {
-    scene *s = test_scene(cube, 10, 0.3, 1);
+    scene *s = test_scene(test_cube, 10, 0.3, 1);
     s->dx = DX;
     s->kernel = s->laplacian = KERNEL_CUBIC;
     s->bodies[0].velocity = (scene_function){.outputs = 3, .call = torn_in_flight};

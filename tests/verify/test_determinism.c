@@ -3,9 +3,7 @@
  * A tube that cracks, small, in every kernel and precision: the hash of (x, v, F, d) at 1, 2, 3 and 7 threads is one; a simulation restored from
  * the records saved at any frame reaches the same hash, dt and energies as the one that was never interrupted. */
 #include "check.h"
-#include "verify/solid_scene.h"
-
-#include "base/memory.h"
+#include "verify/engine_contract.h"
 
 enum { FRAMES = 6 };
 
@@ -34,21 +32,6 @@ static scene *cracking_tube(kernel_kind kernel, kernel_kind laplacian) {
     return s;
 }
 
-static uint64_t run_frames(simulation *sim, int frames, double *damage) {
-    report r;
-    uint64_t hash = 0;
-    for (int f = 0; f < frames; f++) {
-        status code = simulation_advance(sim, NULL, &r);
-        if (code != STATUS_OK) printf("  %s\n", r.message);
-        CHECK(code == STATUS_OK);
-    }
-    simulation_measures m;
-    simulation_measure(sim, &m, &r);
-    *damage = m.solid.damage_max;
-    simulation_hash(sim, &hash, &r);
-    return hash;
-}
-
 static void threads_do_not_change_bits(void) {
     static const kernel_kind kernels[][2] = {{KERNEL_QUADRATIC, KERNEL_QUADRATIC}, {KERNEL_QUADRATIC, KERNEL_CUBIC}, {KERNEL_CUBIC, KERNEL_CUBIC}};
     static const int threads[] = {1, 2, 3, 7};
@@ -58,11 +41,13 @@ static void threads_do_not_change_bits(void) {
             for (int t = 0; t < 4; t++) {
                 scene *s = cracking_tube(kernels[k][0], kernels[k][1]);
                 simulation *sim = test_simulation(s, precision, "auto", threads[t]);
-                double damage;
-                uint64_t hash = run_frames(sim, FRAMES, &damage);
+                report r;
+                simulation_measures m;
+                uint64_t hash = contract_frames(sim, FRAMES);
+                simulation_measure(sim, &m, &r);
                 if (t == 0) first = hash;
                 CHECK(hash == first);
-                CHECK(damage > 0.5);
+                CHECK(m.solid.damage_max > 0.5);
                 simulation_destroy(sim);
                 scene_destroy(s);
             }
@@ -71,68 +56,21 @@ static void threads_do_not_change_bits(void) {
 }
 
 static void restarts_do_not_change_bits(void) {
-    report r;
-    double damage;
     scene *s = cracking_tube(KERNEL_QUADRATIC, KERNEL_CUBIC);
-    simulation *whole = test_simulation(s, 32, "auto", 2);
-    record_list saved[FRAMES + 1] = {0};
-    for (int f = 0; f <= FRAMES; f++) {
-        CHECK(simulation_save(whole, &saved[f], &r) == STATUS_OK);
-        if (f < FRAMES) (void)run_frames(whole, 1, &damage);
-    }
-    uint64_t expected, hash;
-    simulation_hash(whole, &expected, &r);
-    simulation_measures a, b;
-    simulation_measure(whole, &a, &r);
-    for (int f = 0; f <= FRAMES; f++) {
-        simulation *again = test_simulation(s, 32, "auto", 1);
-        CHECK(simulation_restore(again, &saved[f], &r) == STATUS_OK);
-        hash = run_frames(again, FRAMES - f, &damage);
-        CHECK(hash == expected);
-        simulation_measure(again, &b, &r);
-        CHECK(a.steps == b.steps && a.dt_min == b.dt_min && a.solid.kinetic == b.solid.kinetic && a.solid.grip_work == b.solid.grip_work);
-        simulation_destroy(again);
-        record_clear(&saved[f]);
-    }
-    simulation_destroy(whole);
+    contract_restarts(s, FRAMES);
     scene_destroy(s);
 }
 
 static void steps_allocate_nothing(void) {
-    report r;
     scene *s = cracking_tube(KERNEL_QUADRATIC, KERNEL_CUBIC);
-    simulation *sim = test_simulation(s, 32, "auto", 2);
-    for (int i = 0; i < 20; i++) CHECK(simulation_step(sim, 0, &r) == STATUS_OK);
-    uint64_t before = memory_allocation_count();
-    for (int i = 0; i < 20; i++) CHECK(simulation_step(sim, 0, &r) == STATUS_OK);
-    CHECK(memory_allocation_count() == before);
-    simulation_destroy(sim);
+    contract_no_allocation(s);
     scene_destroy(s);
 }
 
-/* Every allocation of a simulation's making is made to fail in turn: an error each time, nothing leaks. */
 static void allocation_failures_are_errors(void) {
-    report r;
     scene *s = cracking_tube(KERNEL_QUADRATIC, KERNEL_CUBIC);
-    CHECK(scene_validate(s, &r) == STATUS_OK);
     s->particles = 300;
-    size_t before = memory_live_bytes();
-    int failures = 0;
-    for (int64_t n = 1; n < 1000; n++) {
-        simulation *sim = NULL;
-        simulation_options o = {.threads = 1, .precision = 32, .simd = "auto"};
-        memory_fail_after(n, 0);
-        status code = simulation_create(s, &o, &sim, &r);
-        if (code == STATUS_OK) code = simulation_advance(sim, NULL, &r);
-        memory_fail_after(0, 0);
-        simulation_destroy(sim);
-        CHECK(memory_live_bytes() == before);
-        if (code == STATUS_OK) break;
-        CHECK(code == STATUS_SYSTEM);
-        failures++;
-    }
-    printf("  %d allocations failed in turn\n", failures);
-    CHECK(failures > 10);
+    contract_memory_out(s, 10);
     scene_destroy(s);
 }
 

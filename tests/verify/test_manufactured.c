@@ -102,15 +102,11 @@ static const shape *bar(arena *a) {
     return shape_box(a, (const double[]){-0.5, 0, 0}, (const double[]){0.5, width, width});
 }
 
-static const shape *cube(arena *a) {
-    return shape_box(a, (const double[]){-0.5, -0.5, -0.5}, (const double[]){0.5, 0.5, 0.5});
-}
-
 /* Error of u at the end over u itself, both as root mean squares over the particles. The velocity is that of
  * the time `lead`, in steps. */
 static double solve(bool line, int cells, double dt, double lead) {
     width = 2.0 / cells;
-    scene *s = test_scene(line ? bar : cube, E, NU, DENSITY);
+    scene *s = test_scene(line ? bar : test_cube, E, NU, DENSITY);
     s->dx = 1.0 / cells;
     s->particles_per_cell = 8;
     s->kernel = KERNEL_CUBIC;

@@ -4,17 +4,10 @@
  * - The bound of ∂²Ψ/∂F² holds along random directions, and is not far off.
  * - Where F is singular, and no τ has a P, it still is the gradient of the energy; in a collapsed state fibres push out along themselves. */
 #include "check.h"
+#include "verify/matrices.h"
 #include "verify/solid_point.h"
 
-#include "base/random.h"
-
-static double chance(uint64_t stream, uint64_t i) {
-    return 2 * random_unit(77, stream, i) - 1;
-}
-
-static double determinant(const double F[9]) {
-    return F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
-}
+enum { SEED = 77 };
 
 static material_point *point_of(bool corotated) {
     material_point *p = point_create(1u << (corotated ? EFFECT_corotated : EFFECT_elastic) | 1u << EFFECT_fibres);
@@ -58,7 +51,7 @@ static void piola_is_tau_without_the_inverse(void) {
         int inverted = 0;
         for (uint64_t i = 0; i < 20000; i++) {
             double F[9], P[9], tau[6], D[9], length = 0, size = 1;
-            for (int c = 0; c < 9; c++) F[c] = (c % 4 == 0) + (i % 2 ? 1.5 : 0.4) * chance((uint64_t)c, i);
+            for (int c = 0; c < 9; c++) F[c] = (c % 4 == 0) + (i % 2 ? 1.5 : 0.4) * random_sign(SEED, (uint64_t)c, i);
             double bound = point_piola(p, F, P);
             point_stress(p, tau);
             static const int place[9] = {0, 3, 5, 3, 1, 4, 5, 4, 2};
@@ -69,7 +62,7 @@ static void piola_is_tau_without_the_inverse(void) {
             }
             inverted += determinant(F) < 0;
             if (corotated && determinant(F) < 0.05) continue; /* kinks, where the smallest stretch changes sides */
-            for (int c = 0; c < 9; c++) D[c] = chance(20 + (uint64_t)c, i), length += D[c] * D[c];
+            for (int c = 0; c < 9; c++) D[c] = random_sign(SEED, 20 + (uint64_t)c, i), length += D[c] * D[c];
             for (int c = 0; c < 9; c++) D[c] /= sqrt(length);
             double second = (energy_at(p, F, h, D) - 2 * energy_at(p, F, 0, D) + energy_at(p, F, -h, D)) / (h * h);
             curvature = fmax(curvature, second / bound);

@@ -11,10 +11,6 @@
 #include "base/memory.h"
 #include "solid/effects/list.h"
 
-static const shape *bar(arena *a) {
-    return shape_box(a, (const double[]){-2, -0.5, -0.5}, (const double[]){2, 0.5, 0.5});
-}
-
 typedef struct bar_state {
     double stretch, volume, elastic, strain; /* of the middle: by positions; F's own stretch; mean plastic strain */
     double strain_most, damage_most;         /* anywhere */
@@ -56,7 +52,7 @@ static bar_state look(simulation *sim, const double *rest, bool plastic) {
 /* States at the end of the pull, soon after, and later. */
 static void pull_and_release(int precision, bool plastic, bar_state out[3]) {
     static const double at[3] = {1.5, 6, 8};
-    scene *s = test_scene(bar, 100, 0.3, 1);
+    scene *s = test_scene(test_bar, 100, 0.3, 1);
     s->particles = 2000;
     s->transfer = TRANSFER_RPIC; /* damps what the release sets going */
     for (int side = -1; side <= 1; side += 2) {
@@ -113,7 +109,7 @@ static void plastic_runs_before_damage(void) {
 
 static void wrong_materials_are_named(void) {
     report r;
-    scene *s = test_scene(bar, 100, 0.3, 1);
+    scene *s = test_scene(test_bar, 100, 0.3, 1);
     test_set(s, "plastic", NULL, 0);
     CHECK(scene_validate(s, &r) == STATUS_INPUT && strstr(r.key, "plastic.yield_stress"));
     test_set(s, "plastic", "yield_stress", 1);

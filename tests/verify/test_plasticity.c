@@ -10,32 +10,14 @@
  * - f32 on every instruction set against f64: 4e-6.
  * What a body makes of it: test_plastic_bar.c. */
 #include "check.h"
+#include "verify/matrices.h"
 #include "verify/plasticity_f32.h"
 #include "verify/solid_point.h"
 
 #include "base/eigen.h"
-#include "base/random.h"
 
-enum { PLASTIC_FIELD = 9 };
+enum { SEED = 33, PLASTIC_FIELD = 9 };
 static const double E = 100, NU = 0.3, MU = 100 / 2.6;
-
-static double uniform(uint64_t stream, uint64_t i) {
-    return 2 * random_unit(33, stream, i) - 1;
-}
-
-static double determinant(const double F[9]) {
-    return F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
-}
-
-static void multiply(const double A[9], const double B[9], double C[9]) {
-    double out[9];
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            out[3 * i + j] = 0;
-            for (int k = 0; k < 3; k++) out[3 * i + j] += A[3 * i + k] * B[3 * k + j];
-        }
-    memcpy(C, out, sizeof out);
-}
 
 static double largest_difference(const double A[9], const double B[9]) {
     double most = 0;
@@ -43,22 +25,11 @@ static double largest_difference(const double A[9], const double B[9]) {
     return most;
 }
 
-/* A rotation from a random unit quaternion. */
-static void random_rotation(uint64_t i, double R[9]) {
-    double q[4], n = 0;
-    for (int c = 0; c < 4; c++) q[c] = uniform(100 + (uint64_t)c, i), n += q[c] * q[c];
-    for (int c = 0; c < 4; c++) q[c] /= sqrt(n);
-    double w = q[0], x = q[1], y = q[2], z = q[3];
-    const double r[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z), 1 - 2 * (x * x + z * z),
-                         2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
-    memcpy(R, r, sizeof r);
-}
-
 /* R diag(s) Q with random rotations. */
 static void compose(uint64_t i, const double s[3], double F[9]) {
     double R[9], Q[9];
-    random_rotation(2 * i, R);
-    random_rotation(2 * i + 1, Q);
+    random_rotation(SEED, 2 * i, R);
+    random_rotation(SEED, 2 * i + 1, Q);
     for (int c = 0; c < 9; c++) R[c] *= s[c % 3];
     multiply(R, Q, F);
 }
@@ -141,7 +112,7 @@ static void returns_to_the_surface(void) {
     int yielded = 0, inverted = 0;
     for (uint64_t i = 0; i < 100000; i++) {
         double F[9], G[9], H[9];
-        for (int c = 0; c < 9; c++) F[c] = (c % 4 == 0) + (i % 2 ? 1.2 : 0.2) * uniform((uint64_t)c, i);
+        for (int c = 0; c < 9; c++) F[c] = (c % 4 == 0) + (i % 2 ? 1.2 : 0.2) * random_sign(SEED, (uint64_t)c, i);
         double J = determinant(F), before = deviator_norm(F);
         if (fabs(J) < 0.01 || 2 * MU * before <= yield_stress) continue;
         map(p, F, G);
@@ -167,8 +138,8 @@ static void returns_to_the_surface(void) {
 
 /* Stretches with deviator of a given norm, from a random direction and a random volume. */
 static void stretches_at(uint64_t i, double norm, double s[3]) {
-    double e[3], mean = 0, length = 0, volume = 0.3 * uniform(53, i);
-    for (int c = 0; c < 3; c++) e[c] = uniform(50 + (uint64_t)c, i), mean += e[c] / 3;
+    double e[3], mean = 0, length = 0, volume = 0.3 * random_sign(SEED, 53, i);
+    for (int c = 0; c < 3; c++) e[c] = random_sign(SEED, 50 + (uint64_t)c, i), mean += e[c] / 3;
     for (int c = 0; c < 3; c++) e[c] -= mean, length += e[c] * e[c];
     for (int c = 0; c < 3; c++) s[c] = exp(volume + e[c] * norm / sqrt(length));
 }
@@ -227,9 +198,9 @@ static void turning_commutes(void) {
     double worst = 0;
     for (uint64_t i = 0; i < 20000; i++) {
         double R[9], Q[9], F[9], RFQ[9], mapped[9], turned[9];
-        random_rotation(2 * i, R);
-        random_rotation(2 * i + 1, Q);
-        for (int c = 0; c < 9; c++) F[c] = (c % 4 == 0) + uniform((uint64_t)c, i);
+        random_rotation(SEED, 2 * i, R);
+        random_rotation(SEED, 2 * i + 1, Q);
+        for (int c = 0; c < 9; c++) F[c] = (c % 4 == 0) + random_sign(SEED, (uint64_t)c, i);
         if (fabs(determinant(F)) < 0.01) continue;
         multiply(R, F, RFQ);
         multiply(RFQ, Q, RFQ);
@@ -308,7 +279,7 @@ static void hardening_is_linear(void) {
     double mean = log(s[0] * s[1] * s[2]) / 3, F[9], one = 0, many = 0, zero = 0;
     for (int steps = 1; steps <= 1000; steps *= 1000) {
         double stretch[3] = {1, 1, 1}, turn[9], G[9];
-        random_rotation(3, turn);
+        random_rotation(SEED, 3, turn);
         point_set(p, PLASTIC_FIELD, &zero);
         memcpy(G, turn, sizeof G);
         for (int n = 0; n < steps; n++) {

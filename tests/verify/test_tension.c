@@ -7,16 +7,6 @@
 
 #include "base/memory.h"
 
-static const shape *bar(arena *a) {
-    return shape_box(a, (const double[]){-2, -0.5, -0.5}, (const double[]){2, 0.5, 0.5});
-}
-
-static void add_grip(scene *s, double side, double speed) {
-    double low[3] = {side < 0 ? -3 : 1.75, -2, -2}, high[3] = {side < 0 ? -1.75 : 3, 2, 2};
-    s->grips[s->grip_count++] = (scene_grip){.shape = shape_box(s->memory, low, high), .stop = HUGE_VAL,
-                                             .velocity = {.outputs = 3, .constant = {side * speed, 0, 0}}};
-}
-
 static void mean_strain(simulation *sim, const double *rest, double strain[3]) {
     solid *state;
     const solid_engine *engine = simulation_engine(sim, &state);
@@ -35,11 +25,10 @@ static void mean_strain(simulation *sim, const double *rest, double strain[3]) {
 
 static void tension_gives_back_the_moduli(void) {
     double E = 100, nu = 0.3, speed = 2e-3;
-    scene *s = test_scene(bar, E, nu, 1);
+    scene *s = test_scene(test_bar, E, nu, 1);
     s->particles = 4000;
     s->transfer = TRANSFER_RPIC; /* damps the waves that the start sends out */
-    add_grip(s, -1, speed);
-    add_grip(s, 1, speed);
+    test_pull(s, 1.75, speed);
     simulation *sim = test_simulation(s, 64, "auto", 2);
     report r;
     int64_t n = simulation_get_plan(sim)->particles;

@@ -194,22 +194,14 @@ static void fast_change_limits_the_step(void) {
     scene_destroy(s);
 }
 
-static const shape *bar(arena *a) {
-    return shape_box(a, (const double[]){-2, -0.5, -0.5}, (const double[]){2, 0.5, 0.5});
-}
-
 static void a_bar_in_tension_gives_back_E(void) {
     double E = 100, nu = 0.3, speed = 2e-3;
-    scene *s = test_scene(bar, E, nu, 1);
+    scene *s = test_scene(test_bar, E, nu, 1);
     s->bodies[0].discretisation = DISCRETISATION_TETRAHEDRA;
     s->dx = 0.25;
     s->effects[EFFECT_mass_damping].on = true;
     s->effects[EFFECT_mass_damping].value[0][0] = 1;
-    for (int side = -1; side <= 1; side += 2) {
-        double low[3] = {side < 0 ? -3 : 1.9, -2, -2}, high[3] = {side < 0 ? -1.9 : 3, 2, 2};
-        s->grips[s->grip_count++] = (scene_grip){.shape = shape_box(s->memory, low, high), .stop = HUGE_VAL,
-                                                 .velocity = {.outputs = 3, .constant = {side * speed, 0, 0}}};
-    }
+    test_pull(s, 1.9, speed);
     simulation *sim = test_simulation(s, 64, "auto", 2);
     report r;
     simulation_measures before, after;

@@ -1,6 +1,7 @@
 /* What every engine owes, of bodies of tetrahedra: the same bits at any number of threads and after a restart, no allocation in a step, errors where memory
  * is out, a diagnosis where a state is not finite, input that is wrong named; vector builds agree with plain. */
 #include "check.h"
+#include "verify/engine_contract.h"
 #include "verify/solid_particles.h"
 
 enum { FRAMES = 4 };
@@ -44,14 +45,6 @@ static scene *two_balls(void) {
     return s;
 }
 
-static uint64_t run_frames(simulation *sim, int frames) {
-    report r;
-    uint64_t hash = 0;
-    for (int f = 0; f < frames; f++) CHECK(simulation_advance(sim, NULL, &r) == STATUS_OK);
-    CHECK(simulation_hash(sim, &hash, &r) == STATUS_OK);
-    return hash;
-}
-
 static void threads_do_not_change_bits(void) {
     static const int threads[] = {1, 2, 3, 7};
     for (int precision = 32; precision <= 64; precision += 32) {
@@ -60,7 +53,7 @@ static void threads_do_not_change_bits(void) {
         for (int t = 0; t < 4; t++) {
             scene *s = two_balls();
             simulation *sim = test_simulation(s, precision, "auto", threads[t]);
-            uint64_t hash = run_frames(sim, FRAMES);
+            uint64_t hash = contract_frames(sim, FRAMES);
             simulation_measures m;
             report r;
             simulation_measure(sim, &m, &r);
@@ -76,62 +69,20 @@ static void threads_do_not_change_bits(void) {
 }
 
 static void restarts_do_not_change_bits(void) {
-    report r;
     scene *s = two_balls();
-    simulation *whole = test_simulation(s, 32, "auto", 2);
-    record_list saved[FRAMES] = {0};
-    for (int f = 0; f < FRAMES; f++) {
-        CHECK(simulation_save(whole, &saved[f], &r) == STATUS_OK);
-        (void)run_frames(whole, 1);
-    }
-    uint64_t expected = run_frames(whole, 0);
-    simulation_measures a, b;
-    simulation_measure(whole, &a, &r);
-    for (int f = 0; f < FRAMES; f++) {
-        simulation *again = test_simulation(s, 32, "auto", 1);
-        CHECK(simulation_restore(again, &saved[f], &r) == STATUS_OK);
-        CHECK(run_frames(again, FRAMES - f) == expected);
-        simulation_measure(again, &b, &r);
-        CHECK(a.steps == b.steps && a.dt_min == b.dt_min && a.solid.kinetic == b.solid.kinetic && a.solid.grip_work == b.solid.grip_work);
-        simulation_destroy(again);
-        record_clear(&saved[f]);
-    }
-    simulation_destroy(whole);
+    contract_restarts(s, FRAMES);
     scene_destroy(s);
 }
 
 static void steps_allocate_nothing(void) {
-    report r;
     scene *s = two_balls();
-    simulation *sim = test_simulation(s, 32, "auto", 2);
-    for (int i = 0; i < 5; i++) CHECK(simulation_step(sim, 0, &r) == STATUS_OK);
-    uint64_t before = memory_allocation_count();
-    for (int i = 0; i < 20; i++) CHECK(simulation_step(sim, 0, &r) == STATUS_OK);
-    CHECK(memory_allocation_count() == before);
-    simulation_destroy(sim);
+    contract_no_allocation(s);
     scene_destroy(s);
 }
 
 static void allocation_failures_are_errors(void) {
-    report r;
     scene *s = two_balls();
-    CHECK(scene_validate(s, &r) == STATUS_OK);
-    size_t before = memory_live_bytes();
-    int failures = 0;
-    for (int64_t n = 1; n < 1000; n++) {
-        simulation *sim = NULL;
-        simulation_options o = {.threads = 1, .precision = 32, .simd = "auto"};
-        memory_fail_after(n, 0);
-        status code = simulation_create(s, &o, &sim, &r);
-        memory_fail_after(0, 0);
-        simulation_destroy(sim);
-        CHECK(memory_live_bytes() == before);
-        if (code == STATUS_OK) break;
-        CHECK(code == STATUS_SYSTEM);
-        failures++;
-    }
-    printf("  %d allocations failed in turn\n", failures);
-    CHECK(failures > 30);
+    contract_memory_out(s, 30);
     scene_destroy(s);
 }
 
@@ -208,7 +159,7 @@ static void frames_carry_the_mesh(void) {
         if (t) CHECK(t->count == simulation_get_plan(sim)->tetrahedra && t->components == 4);
         for (int64_t i = 0; t && i < 4 * t->count; i++) CHECK(((int32_t *)t->data)[i] >= 0 && ((int32_t *)t->data)[i] < x->count);
         record_clear(&list);
-        (void)run_frames(sim, 1);
+        (void)contract_frames(sim, 1);
     }
     simulation_destroy(sim);
     scene_destroy(s);

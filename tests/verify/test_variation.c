@@ -10,10 +10,6 @@
 
 #include "base/memory.h"
 
-static const shape *cube(arena *a) {
-    return shape_box(a, (const double[]){-0.5, -0.5, -0.5}, (const double[]){0.5, 0.5, 0.5});
-}
-
 static status swell(void *context, const double *x, int inputs, double *v, int outputs, report *r) {
     (void)context, (void)inputs, (void)outputs, (void)r;
     const double rate[3] = {0.9, -0.2, 0.3};
@@ -22,7 +18,7 @@ static status swell(void *context, const double *x, int inputs, double *v, int o
 }
 
 static scene *swinging_cube(bool implicit) {
-    scene *s = test_scene(cube, 10, 0.3, 1);
+    scene *s = test_scene(test_cube, 10, 0.3, 1);
     s->particles = 512;
     s->bodies[0].velocity = (scene_function){.outputs = 3, .call = swell};
     s->bodies[0].fibres = (scene_fibres){.families = 1, .direction = {.outputs = 3, .constant = {1, 0.5, 0}}};

@@ -13,9 +13,16 @@ foreach(list ${TEST_LISTS})
   include(${list})
 endforeach()
 
-# Tests in which threads share data: what ./dev test --tsan runs.
-foreach(name base determinism tetra_state inextensible damage_grid knobs sheet_determinism sheet_multirate both_kinds session console turns tui tui_actions)
-  if(TEST ${name})
-    set_property(TEST ${name} APPEND PROPERTY LABELS threads)
-  endif()
-endforeach()
+# sunder_label(LABEL name…): of those that are built.
+function(sunder_label label)
+  foreach(name ${ARGN})
+    if(TEST ${name})
+      set_property(TEST ${name} APPEND PROPERTY LABELS ${label})
+    endif()
+  endforeach()
+endfunction()
+
+# Much arithmetic of code that other tests run too: with sanitizers, quarters of an hour each that find nothing more.
+sunder_label(heavy sheet_fracture inextensible damage_grid)
+# Threads share data: what ./dev test --tsan runs.
+sunder_label(threads base determinism tetra_state knobs sheet_determinism sheet_multirate both_kinds session console turns tui tui_actions)

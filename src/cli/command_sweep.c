@@ -7,20 +7,16 @@
 #include "script/sweep.h"
 #include "session/session.h"
 #include "store/ledger.h"
+#include "study/worker.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <getopt.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
-extern char **environ;
-
-enum { JOBS = 64, ARGUMENTS = 16 + 2 * (CLI_SETTINGS + SWEEP_SETTINGS + SWEEP_AXES), RUN_TEXT = 400 };
+enum { JOBS = 64, RUN_TEXT = 400 };
+_Static_assert(WORKER_TEXTS >= 3 + CLI_SETTINGS + SWEEP_SETTINGS + SWEEP_AXES, "a run's settings fit among its words");
 
 static const char *const state_names[] = {"not started", "interrupted", "done", "failed", "done before"};
 
@@ -29,11 +25,6 @@ typedef struct sweep_run {
     int exit_code;
     char id[SWEEP_ID], message[SWEEP_MESSAGE];
 } sweep_run;
-
-typedef struct job {
-    int run; /* −1: free */
-    FILE *out, *error;
-} job;
 
 typedef struct sweep_command {
     cli_scene_options given; /* .scene is the sweep's file */
@@ -44,7 +35,7 @@ typedef struct sweep_command {
     sweep plan;
     int count;
     sweep_run *runs; // [count]
-    job job[JOBS];
+    worker job[JOBS];
 } sweep_command;
 
 /* ---- one run's settings ------------------------------------------------------------------------------------------ */
@@ -168,80 +159,40 @@ static void catch_signals(void) {
     sigaction(SIGHUP, &action, NULL);
 }
 
-static int fill_arguments(const sweep_command *c, int run, char *argv[ARGUMENTS], char (*text)[300]) {
-    script_setting settings[SWEEP_SETTINGS + CLI_SETTINGS + SWEEP_AXES];
-    int count = 0, texts = 0, setting_count = list_settings(c, run, settings);
-    char *const head[] = {"sunder", "run", (char *)c->plan.scene, "--json", "--quiet", "--checkpoint-every", "0", "--db", (char *)c->path, "--threads"};
-    for (size_t i = 0; i < sizeof head / sizeof *head; i++) argv[count++] = head[i];
-    snprintf(text[texts], sizeof text[0], "%ld", c->threads);
-    argv[count++] = text[texts++];
-    if (c->frames >= 0 || c->plan.frames >= 0) {
-        snprintf(text[texts], sizeof text[0], "%lld", (long long)(c->frames >= 0 ? c->frames : c->plan.frames));
-        argv[count++] = "--frames", argv[count++] = text[texts++];
-    }
-    if (c->plan.recipe[0]) argv[count++] = "--recipe", argv[count++] = (char *)c->plan.recipe;
-    for (int i = 0; i < setting_count; i++) {
-        snprintf(text[texts], sizeof text[0], "%.140s=%.140s", settings[i].key, settings[i].value);
-        argv[count++] = "--set", argv[count++] = text[texts++];
-    }
-    argv[count] = NULL;
-    return count;
+static void list_words(const sweep_command *c, int run, worker_words *w) {
+    static script_setting settings[SWEEP_SETTINGS + CLI_SETTINGS + SWEEP_AXES];
+    int count = list_settings(c, run, settings);
+    const char *const head[] = {"run", c->plan.scene, "--json", "--quiet", "--checkpoint-every", "0", "--db", c->path};
+    worker_words_begin(w);
+    for (size_t i = 0; i < sizeof head / sizeof *head; i++) worker_word(w, head[i]);
+    worker_option(w, "--threads", "%ld", c->threads);
+    if (c->frames >= 0 || c->plan.frames >= 0) worker_option(w, "--frames", "%lld", (long long)(c->frames >= 0 ? c->frames : c->plan.frames));
+    if (c->plan.recipe[0]) worker_option(w, "--recipe", "%s", c->plan.recipe);
+    for (int i = 0; i < count; i++) worker_option(w, "--set", "%.140s=%.140s", settings[i].key, settings[i].value);
 }
 
 static status launch(sweep_command *c, int slot, int run, report *r) {
-    static char text[CLI_SETTINGS + SWEEP_SETTINGS + SWEEP_AXES + 2][300];
-    char *argv[ARGUMENTS];
-    job *j = &c->job[slot];
-    posix_spawn_file_actions_t actions;
-    pid_t pid = 0;
-    fill_arguments(c, run, argv, text);
-    j->out = tmpfile();
-    j->error = tmpfile();
-    if (!j->out || !j->error) return report_set(r, STATUS_SYSTEM, "a temporary file for a run's output: %s", strerror(errno));
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions, fileno(j->out), STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, fileno(j->error), STDERR_FILENO);
-    int trouble = posix_spawn(&pid, "/proc/self/exe", &actions, NULL, argv, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    if (trouble) return report_set(r, STATUS_SYSTEM, "starting a run: %s", strerror(trouble));
-    j->run = run;
-    children[slot] = pid;
+    static worker_words words;
+    list_words(c, run, &words);
+    status code = worker_start(&c->job[slot], run, &words, r);
+    if (code != STATUS_OK) return code;
+    children[slot] = c->job[slot].pid;
     c->runs[run].state = SWEEP_GOING;
     return STATUS_OK;
-}
-
-/* The run's id from its summary, and the last line of what it complained about. */
-static void read_output(job *j, sweep_run *run) {
-    char line[1024];
-    rewind(j->out), rewind(j->error);
-    while (fgets(line, sizeof line, j->out)) {
-        const char *at = strstr(line, "\"run_id\": \"");
-        if (at) snprintf(run->id, sizeof run->id, "%.*s", (int)strcspn(at + 11, "\""), at + 11);
-    }
-    while (run->state == SWEEP_FAILED && fgets(line, sizeof line, j->error)) {
-        line[strcspn(line, "\n")] = '\0';
-        if (*line) snprintf(run->message, SWEEP_MESSAGE, "%.*s", SWEEP_MESSAGE - 1, line);
-    }
-}
-
-static void close_job(job *j) {
-    if (j->out) fclose(j->out);
-    if (j->error) fclose(j->error);
-    *j = (job){.run = -1};
 }
 
 static void reap(sweep_command *c, pid_t pid, int outcome) {
     for (int slot = 0; slot < c->jobs; slot++) {
         if (children[slot] != pid) continue;
         children[slot] = 0;
-        job *j = &c->job[slot];
+        worker *j = &c->job[slot];
         sweep_run *run = &c->runs[j->run];
-        run->exit_code = WIFEXITED(outcome) ? WEXITSTATUS(outcome) : 128 + WTERMSIG(outcome);
+        run->exit_code = worker_exit_code(outcome);
         if (run->exit_code != 130) run->state = run->exit_code == 0 ? SWEEP_DONE : SWEEP_FAILED;
-        read_output(j, run);
+        (void)worker_member(j, "run_id", run->id, sizeof run->id);
+        if (run->state == SWEEP_FAILED) worker_complaint(j, run->message, sizeof run->message);
         say(c, j->run);
-        close_job(j);
+        worker_close(j);
     }
 }
 
@@ -258,9 +209,9 @@ static status run_all(sweep_command *c, report *r) {
             while (next < c->count && c->runs[next].state != SWEEP_WAITING) next++;
             if (next == c->count || c->job[slot].run >= 0) continue;
             code = launch(c, slot, next, r);
-            if (code != STATUS_OK) close_job(&c->job[slot]);
-            else going++;
-            if (code == STATUS_OK && c->lines) say(c, next);
+            if (code != STATUS_OK) break;
+            going++;
+            if (c->lines) say(c, next);
         }
         if (going == 0) return code;
         int outcome;

@@ -1,28 +1,23 @@
 /* Making the runs: children side by side, each with a limit of time. */
 #include "study/stress.h"
 
+#include "base/clock.h"
+#include "study/worker.h"
+
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <signal.h>
-#include <spawn.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <time.h>
-#include <unistd.h>
 
-extern char **environ;
-
-enum { JOBS = 64, ARGUMENTS = 24 + 2 * HARD_TURNS, ARGUMENT = 2 * HARD_TEXT + 64 };
+enum { JOBS = 64 };
 
 typedef struct job {
-    int run; /* −1: free */
-    pid_t pid;
+    worker child;
     double start;
-    FILE *out, *error;
 } job;
 
 static volatile sig_atomic_t stopped;
@@ -32,105 +27,36 @@ static void on_signal(int number) {
     stopped = number;
 }
 
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* ---- a child ----------------------------------------------------------------------------------------------------- */
 
-typedef struct words {
-    char *argv[ARGUMENTS + 1];
-    char text[ARGUMENTS][ARGUMENT];
-    int count, texts;
-} words;
-
-static void add(words *w, const char *word) {
-    w->argv[w->count++] = (char *)word;
-    w->argv[w->count] = NULL;
-}
-
-static void add_text(words *w, const char *option, const char *format, ...) __attribute__((format(printf, 3, 4)));
-
-static void add_text(words *w, const char *option, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(w->text[w->texts], ARGUMENT, format, arguments);
-    va_end(arguments);
-    add(w, option);
-    add(w, w->text[w->texts++]);
-}
-
-static void list_words(const stress_request *q, const stress_run *run, words *w) {
+static void list_words(const stress_request *q, const stress_run *run, worker_words *w) {
     const stress_case *c = &q->suite->cases[run->which];
-    *w = (words){0};
-    add(w, "sunder"), add(w, "run"), add(w, c->scene), add(w, "--json"), add(w, "--quiet");
-    add(w, "--checkpoint-every"), add(w, "0");
-    add(w, "--db"), add(w, q->database);
-    add_text(w, "--threads", "%d", q->threads);
-    add_text(w, "--precision", "f%d", run->precision);
-    if (run->simd[0]) add_text(w, "--simd", "%s", run->simd);
-    if (c->variant[0]) add_text(w, "--set", "variant=%s", c->variant);
-    if (run->scale != 1 && c->particles > 0) add_text(w, "--set", "particles=%.0f", run->scale * (double)c->particles);
+    const char *const head[] = {"run", c->scene, "--json", "--quiet", "--checkpoint-every", "0", "--db", q->database};
+    worker_words_begin(w);
+    for (size_t i = 0; i < sizeof head / sizeof *head; i++) worker_word(w, head[i]);
+    worker_option(w, "--threads", "%d", q->threads);
+    worker_option(w, "--precision", "f%d", run->precision);
+    if (run->simd[0]) worker_option(w, "--simd", "%s", run->simd);
+    if (c->variant[0]) worker_option(w, "--set", "variant=%s", c->variant);
+    if (run->scale != 1 && c->particles > 0) worker_option(w, "--set", "particles=%.0f", run->scale * (double)c->particles);
     for (int i = 0; i < c->hard.turn_count; i++)
-        add_text(w, "--turn", "%lld:%s=%s", (long long)c->hard.turns[i].frame, c->hard.turns[i].path, c->hard.turns[i].value);
+        worker_option(w, "--turn", "%lld:%s=%s", (long long)c->hard.turns[i].frame, c->hard.turns[i].path, c->hard.turns[i].value);
 }
 
 static status launch(const stress_request *q, job *j, int run, report *r) {
-    static words w;
-    posix_spawn_file_actions_t actions;
-    list_words(q, &q->runs[run], &w);
-    j->out = tmpfile();
-    j->error = tmpfile();
-    if (!j->out || !j->error) return report_set(r, STATUS_SYSTEM, "a temporary file for a run's output: %s", strerror(errno));
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions, fileno(j->out), STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, fileno(j->error), STDERR_FILENO);
-    int trouble = posix_spawn(&j->pid, "/proc/self/exe", &actions, NULL, w.argv, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    if (trouble) return report_set(r, STATUS_SYSTEM, "starting a run: %s", strerror(trouble));
-    j->run = run;
-    j->start = now();
+    static worker_words words;
+    list_words(q, &q->runs[run], &words);
+    status code = worker_start(&j->child, run, &words, r);
+    if (code != STATUS_OK) return code;
+    j->start = clock_seconds();
     q->runs[run].verdict = STRESS_GOING;
     return STATUS_OK;
 }
 
-static void close_job(job *j) {
-    if (j->out) fclose(j->out);
-    if (j->error) fclose(j->error);
-    *j = (job){.run = -1};
-}
-
-/* A text member of the summary, which has one a line. */
-static bool take_member(const char *line, const char *name, char *out, size_t size) {
-    char start[64];
-    snprintf(start, sizeof start, "\"%s\": \"", name);
-    const char *at = strstr(line, start);
-    if (!at) return false;
-    at += strlen(start);
-    size_t used = 0;
-    for (; *at && *at != '"' && used + 1 < size; at++) {
-        if (*at == '\\' && at[1]) at++;
-        out[used++] = *at;
-    }
-    out[used] = '\0';
-    return true;
-}
-
-static void read_output(job *j, stress_run *run) {
-    char line[4096];
-    rewind(j->out), rewind(j->error);
-    while (fgets(line, sizeof line, j->out)) {
-        (void)take_member(line, "run_id", run->id, sizeof run->id);
-        (void)take_member(line, "out", run->folder, sizeof run->folder);
-    }
-    while (fgets(line, sizeof line, j->error)) {
-        line[strcspn(line, "\n")] = '\0';
-        const char *text = strncmp(line, "sunder: ", 8) == 0 ? line + 8 : line;
-        if (*text) snprintf(run->message, sizeof run->message, "%.*s", STRESS_MESSAGE - 1, text);
-    }
+static void read_output(worker *child, stress_run *run) {
+    (void)worker_member(child, "run_id", run->id, sizeof run->id);
+    (void)worker_member(child, "out", run->folder, sizeof run->folder);
+    worker_complaint(child, run->message, sizeof run->message);
 }
 
 /* ---- the ledger -------------------------------------------------------------------------------------------------- */
@@ -174,14 +100,11 @@ static int choose(const stress_request *q) {
 
 static status start_some(const stress_request *q, job *jobs, report *r) {
     for (int slot = 0; slot < q->jobs && !stopped; slot++) {
-        if (jobs[slot].run >= 0) continue;
+        if (jobs[slot].child.run >= 0) continue;
         int run = choose(q);
         if (run < 0) break;
         status code = launch(q, &jobs[slot], run, r);
-        if (code != STATUS_OK) {
-            close_job(&jobs[slot]);
-            return code;
-        }
+        if (code != STATUS_OK) return code;
         q->tell(q->context, run);
     }
     return STATUS_OK;
@@ -190,19 +113,19 @@ static status start_some(const stress_request *q, job *jobs, report *r) {
 /* Judges it if it has ended; one that takes too long is killed first. */
 static status look_after(const stress_request *q, ledger *l, job *j, report *r) {
     int outcome;
-    stress_run *run = &q->runs[j->run];
-    if (stopped && stopped != SIGINT) kill(j->pid, SIGINT);
-    if (!run->timed_out && now() - j->start > q->limit) {
+    stress_run *run = &q->runs[j->child.run];
+    if (stopped && stopped != SIGINT) kill(j->child.pid, SIGINT);
+    if (!run->timed_out && clock_seconds() - j->start > q->limit) {
         run->timed_out = true;
-        kill(j->pid, SIGKILL);
+        kill(j->child.pid, SIGKILL);
     }
-    pid_t pid = waitpid(j->pid, &outcome, WNOHANG);
+    pid_t pid = waitpid(j->child.pid, &outcome, WNOHANG);
     if (pid == 0 || (pid < 0 && errno == EINTR)) return STATUS_OK;
-    run->exit_code = WIFEXITED(outcome) ? WEXITSTATUS(outcome) : 128 + WTERMSIG(outcome);
-    run->seconds = now() - j->start;
-    read_output(j, run);
-    int which = j->run;
-    close_job(j);
+    run->exit_code = worker_exit_code(outcome);
+    run->seconds = clock_seconds() - j->start;
+    read_output(&j->child, run);
+    int which = j->child.run;
+    worker_close(&j->child);
     if (stopped && run->exit_code == 130) {
         run->verdict = STRESS_WAITING;
         return STATUS_OK;
@@ -217,10 +140,10 @@ static status work(const stress_request *q, ledger *l, job *jobs, report *r) {
         if (code == STATUS_OK) code = start_some(q, jobs, r);
         for (int slot = 0; slot < q->jobs; slot++) {
             report own;
-            if (jobs[slot].run < 0) continue;
+            if (jobs[slot].child.run < 0) continue;
             status judged = look_after(q, l, &jobs[slot], code == STATUS_OK ? r : &own);
             if (code == STATUS_OK) code = judged;
-            going += jobs[slot].run >= 0;
+            going += jobs[slot].child.run >= 0;
         }
         if (going == 0 && (stopped || code != STATUS_OK || choose(q) < 0)) break;
         if (going > 0) nanosleep(&(struct timespec){.tv_nsec = 5000000}, NULL);
@@ -232,7 +155,7 @@ status stress_work(stress_request *q, report *r) {
     struct sigaction action = {.sa_handler = on_signal};
     job jobs[JOBS];
     ledger *l = NULL;
-    for (int i = 0; i < JOBS; i++) jobs[i] = (job){.run = -1};
+    for (int i = 0; i < JOBS; i++) jobs[i] = (job){.child = {.run = -1}};
     if (q->jobs > JOBS) q->jobs = JOBS;
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);

@@ -1,30 +1,42 @@
 /* One pool for the process. The caller works too, and waits only for workers that have taken a chunk: a worker that the
- * system has not scheduled yet delays nobody, so a busy machine slows a run down in proportion and no more. */
+ * system has not scheduled yet delays nobody, so a busy machine slows a run down in proportion and no more.
+ *
+ * A worker begins with a stretch of its own, the same in every call over as many items: what it wrote in one pass is in its own cache in the
+ * next. When that is done it takes chunks from the ends of others' stretches. */
 #include "base/threads.h"
 
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
 #include <stdbool.h>
+#include <time.h>
 
-enum { WORKERS_LIMIT = 256, SPINS = 2000 };
+enum { WORKERS_LIMIT = 256, SPINS = 2000, APART = 4096 /* bytes: prefetchers of two processors that meet in a page slow both down */ };
+
+static const double AWAKE = 3e-4; /* seconds */
 
 typedef struct job {
     int64_t count, grain;
-    int threads;
+    int threads, stages;
     void (*body)(void *context, int64_t i, int worker);
     void *context;
 } job;
+
+/* What is left of a worker's stretches: the first chunk and the one after the last, in one word. */
+typedef struct stretch {
+    _Alignas(APART) _Atomic uint64_t left[PARALLEL_STAGES];
+} stretch;
 
 static pthread_mutex_t owner = PTHREAD_MUTEX_INITIALIZER; /* held by the caller whose job runs */
 static pthread_mutex_t sleep_lock = PTHREAD_MUTEX_INITIALIZER;
 static pthread_cond_t wake = PTHREAD_COND_INITIALIZER;
 static int worker_count; /* started so far; guarded by owner */
 static int sleepers;     /* guarded by sleep_lock */
-static job current;      /* written while `open` is 0 and nobody is inside */
-static atomic_int open_for_work, inside;
+static _Alignas(APART) job current;      /* written while `open` is 0 and nobody is inside */
+static _Alignas(APART) atomic_int inside;
+static _Alignas(APART) atomic_int open_for_work;
 static _Atomic uint64_t generation;
-static _Atomic int64_t next_item;
+static stretch stretches[WORKERS_LIMIT + 1];
 
 static void relax(void) {
 #if defined(__x86_64__)
@@ -39,21 +51,54 @@ void thread_relax(int spins) {
     else sched_yield();
 }
 
-static void take_chunks(int worker) {
+static uint64_t pack_range(int64_t begin, int64_t end) {
+    return (uint64_t)begin << 32 | (uint64_t)end;
+}
+
+/* The first chunk of one's own, or the last of another's; −1: none is left. */
+static int64_t take_chunk(int worker, int stage, bool own) {
+    _Atomic uint64_t *left = &stretches[worker].left[stage];
+    uint64_t range = atomic_load_explicit(left, memory_order_relaxed);
     for (;;) {
-        int64_t first = atomic_fetch_add(&next_item, current.grain);
-        if (first >= current.count) return;
-        int64_t end = first + current.grain < current.count ? first + current.grain : current.count;
-        for (int64_t i = first; i < end; i++) current.body(current.context, i, worker);
+        uint64_t begin = range >> 32, end = range & UINT32_MAX;
+        if (begin >= end) return -1;
+        uint64_t rest = own ? (begin + 1) << 32 | end : begin << 32 | (end - 1);
+        if (atomic_compare_exchange_weak(left, &range, rest)) return (int64_t)(own ? begin : end - 1);
     }
 }
 
-/* Waits for a generation other than `seen`: a short spin, because steps follow each other within microseconds, then sleep. */
+static void run_chunk(int64_t chunk, int worker) {
+    int64_t first = chunk * current.grain;
+    int64_t end = first + current.grain < current.count ? first + current.grain : current.count;
+    for (int64_t i = first; i < end; i++) current.body(current.context, i, worker);
+}
+
+static void take_chunks(int worker) {
+    for (int stage = 0; stage < current.stages; stage++)
+        for (int other = 0; other < current.threads; other++) {
+            int64_t chunk, victim = worker + other < current.threads ? worker + other : worker + other - current.threads;
+            while ((chunk = take_chunk((int)victim, stage, other == 0)) >= 0) run_chunk(chunk, worker);
+        }
+}
+
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Passes follow each other within some 100 µs, and to be woken takes as long: a worker stays awake for a while, lending its processor to whoever
+ * wants it. Whether there is a generation other than `seen` by then. */
+static bool look_out(uint64_t seen) {
+    for (int i = 0; i < SPINS; i++, relax())
+        if (atomic_load(&generation) != seen) return true;
+    for (double until = now() + AWAKE; now() < until; sched_yield())
+        if (atomic_load(&generation) != seen) return true;
+    return false;
+}
+
 static uint64_t await_generation(uint64_t seen) {
-    for (int i = 0; i < SPINS; i++) {
-        if (atomic_load(&generation) != seen) return atomic_load(&generation);
-        relax();
-    }
+    if (look_out(seen)) return atomic_load(&generation);
     pthread_mutex_lock(&sleep_lock);
     sleepers++;
     while (atomic_load(&generation) == seen) pthread_cond_wait(&wake, &sleep_lock);
@@ -110,22 +155,52 @@ static void announce(void) {
     pthread_mutex_unlock(&sleep_lock);
 }
 
-void parallel_for(int threads, int64_t count, int64_t grain, void (*body)(void *context, int64_t i, int worker),
-                  void *context) {
-    /* Another caller's job has the pool: this one runs alone, with the same result. */
-    if (threads <= 1 || count <= grain || pthread_mutex_trylock(&owner) != 0) {
-        for (int64_t i = 0; i < count; i++) body(context, i, 0);
-        return;
-    }
-    start_workers(threads);
-    current = (job){count, grain, threads, body, context};
-    atomic_store(&next_item, 0);
+static void work_alone(int64_t count, void (*body)(void *context, int64_t i, int worker), void *context) {
+    for (int64_t i = 0; i < count; i++) body(context, i, 0);
+}
+
+/* Opens the pool to the job whose stretches are set, and works on it until it is done. */
+static void work_together(const job *j) {
+    current = *j;
     atomic_store(&open_for_work, 1);
     announce();
     take_chunks(0);
     atomic_store(&open_for_work, 0);
     for (int spins = 0; atomic_load(&inside) > 0; spins++) thread_relax(spins);
     pthread_mutex_unlock(&owner);
+}
+
+/* Another caller's job has the pool: this one runs alone, with the same result. */
+static bool enter_pool(int threads) {
+    if (threads > WORKERS_LIMIT || pthread_mutex_trylock(&owner) != 0) return false;
+    start_workers(threads);
+    return true;
+}
+
+void parallel_for(int threads, int64_t count, int64_t grain, void (*body)(void *context, int64_t i, int worker),
+                  void *context) {
+    int64_t chunks = (count + grain - 1) / grain;
+    if (threads <= 1 || chunks <= 1 || chunks > INT32_MAX || !enter_pool(threads)) {
+        work_alone(count, body, context);
+        return;
+    }
+    for (int w = 0; w < threads; w++)
+        atomic_store_explicit(&stretches[w].left[0], pack_range(chunks * w / threads, chunks * (w + 1) / threads), memory_order_relaxed);
+    work_together(&(job){count, grain, threads, 1, body, context});
+}
+
+void parallel_stages(int threads, int stages, const int32_t *bounds, void (*body)(void *context, int64_t i, int worker), void *context) {
+    int32_t count = bounds[stages * (threads + 1) - 1];
+    if (threads <= 1 || count <= 1 || !enter_pool(threads)) {
+        work_alone(count, body, context);
+        return;
+    }
+    for (int w = 0; w < threads; w++)
+        for (int stage = 0; stage < stages; stage++) {
+            const int32_t *at = bounds + stage * (threads + 1) + w;
+            atomic_store_explicit(&stretches[w].left[stage], pack_range(at[0], at[1]), memory_order_relaxed);
+        }
+    work_together(&(job){count, 1, threads, stages, body, context});
 }
 
 int processor_count(void) {

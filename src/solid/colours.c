@@ -2,60 +2,77 @@
  *
  * Blocks of one colour never write to the same node: 8 colours, period two blocks, when kernels stay within −1 … 6 of their block; 27 when they
  * reach −2 … 7. Sums into a node go in the order of colours, so they have the same bits at any number of threads. There is no barrier between
- * colours: a block waits for those blocks of lower colours that touch the slots it touches. A slot counts the blocks that are done with it. If one
- * of the same or a higher colour has been counted, that one has waited for all lower ones itself; so as many counted as there are lower ones
- * means that all of them are done. */
+ * colours: a block waits for those blocks of lower colours that are near enough to share nodes with it. */
 #include "base/threads.h"
-#include "solid/state.h"
+#include "solid/order.h"
 
-enum { CHUNK = 2 /* blocks */ };
+static int colour_period(const solid *s) {
+    return kernels_have_cubic(s) ? 3 : 2;
+}
 
-static int colour_of(const solid_block *b, int period) {
+static int colour_of(const int32_t coordinate[3], int period) {
     int colour = 0;
-    for (int axis = 0; axis < 3; axis++) colour = colour * period + ((b->coordinate[axis] % period) + period) % period;
+    for (int axis = 0; axis < 3; axis++) colour = colour * period + ((coordinate[axis] % period) + period) % period;
     return colour;
 }
 
-static int32_t touched(const solid *s, int32_t slot) {
-    return atomic_load_explicit(&s->slot_touched[slot], memory_order_acquire);
+/* The blocks of lower colours that are less than a period away. */
+static void list_waits(void *context, int64_t block, int worker) {
+    (void)worker;
+    solid *s = context;
+    int period = colour_period(s), own = colour_of(s->blocks[block].coordinate, period), side = 2 * period - 1;
+    const int32_t *at = s->blocks[block].coordinate;
+    int32_t *waits = s->waits + block * s->wait_limit, count = 0;
+    for (int n = 0; n < side * side * side; n++) {
+        const int32_t c[3] = {at[0] + n / (side * side) - period + 1, at[1] + n / side % side - period + 1, at[2] + n % side - period + 1};
+        if (colour_of(c, period) >= own) continue;
+        int32_t slot = order_rank(s, block_key(c));
+        if (slot >= 0 && s->slot_block[slot] >= 0) waits[count++] = s->slot_block[slot];
+    }
+    s->blocks[block].waits = count;
 }
 
-static void touch(const solid *s, int32_t slot) {
-    (void)atomic_fetch_add_explicit(&s->slot_touched[slot], 1, memory_order_release);
-}
-
-static void touch_all(const solid *s, const solid_block *b) {
-    for (int n = 0; n < NEIGHBOURS; n++)
-        if (b->neighbour[n] >= 0) touch(s, b->neighbour[n]);
-}
-
-static void forget_touches(solid *s) {
-    for (int32_t i = 0; i < s->slot_count; i++) atomic_store_explicit(&s->slot_touched[i], 0, memory_order_relaxed);
-}
-
-/* How many blocks of lower colours each block has to wait for at each of its slots. */
-static void assign_turns(solid *s) {
-    forget_touches(s);
-    for (int colour = 0; colour < s->colour_count; colour++) {
-        int32_t begin = s->colour_start[colour], end = s->colour_start[colour + 1];
-        for (int32_t i = begin; i < end; i++) {
-            solid_block *b = &s->blocks[s->colour_blocks[i]];
-            for (int n = 0; n < NEIGHBOURS; n++) b->turn[n] = (uint8_t)(b->neighbour[n] >= 0 ? touched(s, b->neighbour[n]) : 0);
-        }
-        for (int32_t i = begin; i < end; i++) touch_all(s, &s->blocks[s->colour_blocks[i]]);
+/* Each worker's own blocks, the same in every pass: as many packs for each, in the order of blocks. */
+static void share_blocks(solid *s) {
+    int32_t block = 0;
+    for (int w = 0; w <= s->threads; w++) {
+        int64_t packs = (int64_t)s->pack_count * w / s->threads;
+        while (block < s->block_count && s->tiles[s->blocks[block].first_tile].first_pack < packs) block++;
+        s->block_shares[w] = w == s->threads ? s->block_count : block;
     }
 }
 
-void colours_assign(solid *s) {
-    int period = kernels_have_cubic(s) ? 3 : 2;
+static void share_colours(solid *s) {
+    for (int colour = 0; colour < s->colour_count; colour++) {
+        int32_t at = s->colour_start[colour], end = s->colour_start[colour + 1];
+        for (int w = 0; w <= s->threads; w++) {
+            while (at < end && s->colour_blocks[at] < s->block_shares[w]) at++;
+            s->colour_shares[colour * (s->threads + 1) + w] = at;
+        }
+    }
+}
+
+status colours_assign(solid *s, report *r) {
+    int period = colour_period(s);
     int32_t fill[28] = {0};
     s->colour_count = period * period * period;
     memset(s->colour_start, 0, sizeof s->colour_start);
-    for (int32_t b = 0; b < s->block_count; b++) s->colour_start[colour_of(&s->blocks[b], period) + 1]++;
+    for (int32_t b = 0; b < s->block_count; b++) s->colour_start[colour_of(s->blocks[b].coordinate, period) + 1]++;
     for (int i = 0; i < s->colour_count; i++) s->colour_start[i + 1] += s->colour_start[i];
     memcpy(fill, s->colour_start, sizeof fill);
-    for (int32_t b = 0; b < s->block_count; b++) s->colour_blocks[fill[colour_of(&s->blocks[b], period)]++] = b;
-    assign_turns(s);
+    for (int32_t b = 0; b < s->block_count; b++) s->colour_blocks[fill[colour_of(s->blocks[b].coordinate, period)]++] = b;
+    share_blocks(s);
+    share_colours(s);
+    if (s->threads == 1) return STATUS_OK;
+    s->wait_limit = period == 2 ? 26 : 124;
+    status code = order_grow((void **)&s->waits, &s->wait_capacity, s->block_count * s->wait_limit, sizeof *s->waits, "the order of blocks", r);
+    if (code == STATUS_OK)
+        code = order_grow((void **)&s->block_done, &s->done_capacity, s->block_count, sizeof *s->block_done, "the order of blocks", r);
+    if (code != STATUS_OK) return code;
+    for (int32_t slot = 0; slot < s->slot_count; slot++) s->slot_block[slot] = -1;
+    for (int32_t b = 0; b < s->block_count; b++) s->slot_block[s->blocks[b].neighbour[NEIGHBOURS / 2]] = b;
+    parallel_for(s->threads, s->block_count, 8, list_waits, s);
+    return STATUS_OK;
 }
 
 typedef struct colour_context {
@@ -65,26 +82,27 @@ typedef struct colour_context {
     bool alone;
 } colour_context;
 
-static void await_turn(const solid *s, const solid_block *b) {
-    for (int n = 0; n < NEIGHBOURS; n++) {
-        if (b->neighbour[n] < 0) continue;
-        for (int spins = 0; touched(s, b->neighbour[n]) < b->turn[n]; spins++) thread_relax(spins);
-    }
+/* Whether a block is done in this pass is the number of the last pass it was done in. */
+static void await_turn(const solid *s, int32_t block) {
+    const int32_t *waits = s->waits + (int64_t)block * s->wait_limit;
+    for (int32_t i = 0; i < s->blocks[block].waits; i++)
+        for (int spins = 0; atomic_load_explicit(&s->block_done[waits[i]], memory_order_acquire) != s->pass; spins++) thread_relax(spins);
 }
 
-/* A worker takes chunks in order, and what a block waits for lies before it: whoever holds the first block that is not done can go on. */
 static void take_block(void *context, int64_t i, int worker) {
     const colour_context *c = context;
     solid *s = c->state;
     int32_t block = s->colour_blocks[i];
-    bool follows = i + 1 < s->block_count && (c->alone || (i + 1) % CHUNK != 0);
-    if (!c->alone) await_turn(s, &s->blocks[block]);
-    c->pass(c->context, block, follows ? s->colour_blocks[i + 1] : -1, worker);
-    if (!c->alone) touch_all(s, &s->blocks[block]);
+    int32_t next = i + 1 < s->block_count ? s->colour_blocks[i + 1] : -1;
+    bool follows = next >= s->block_shares[worker] && next < s->block_shares[worker + 1];
+    if (!c->alone) await_turn(s, block);
+    c->pass(c->context, block, follows || c->alone ? next : -1, worker);
+    if (!c->alone) atomic_store_explicit(&s->block_done[block], s->pass, memory_order_release);
 }
 
+/* A worker takes blocks in order, and what a block waits for is taken before it: whoever holds the first block that is not done can go on. */
 void colours_pass(solid *s, coloured_pass *pass, void *context) {
     colour_context c = {.state = s, .pass = pass, .context = context, .alone = s->threads == 1};
-    if (!c.alone) forget_touches(s);
-    parallel_for(s->threads, s->block_count, CHUNK, take_block, &c);
+    s->pass++;
+    parallel_stages(s->threads, s->colour_count, s->colour_shares, take_block, &c);
 }

@@ -1,6 +1,7 @@
 /* The solid engine's life: creating, stepping, reporting limits. */
 #include "base/clock.h"
 #include "base/memory.h"
+#include "base/threads.h"
 #include "solid/inextensible.h"
 #include "solid/order.h"
 
@@ -86,12 +87,17 @@ void solid_constants_refresh(solid *s) {
     }
 }
 
+static size_t share_bytes(const solid *s) {
+    return (size_t)(1 + PARALLEL_STAGES) * (size_t)(s->threads + 1) * sizeof *s->block_shares;
+}
+
 static void destroy(solid *s) {
     if (!s) return;
     particles_free(s);
     grid_free(s);
     constraint_forget(s);
     memory_free(s->workers, (size_t)s->threads * sizeof *s->workers);
+    memory_free(s->block_shares, share_bytes(s));
     memory_free(s, sizeof *s);
 }
 
@@ -125,11 +131,12 @@ static solid *create(const solid_definition *definition, report *r) {
     plan_fields(s);
     solid_constants_refresh(s);
     s->workers = memory_allocate_array((size_t)s->threads, sizeof *s->workers);
+    s->block_shares = memory_allocate(share_bytes(s));
+    if (s->block_shares) s->colour_shares = s->block_shares + s->threads + 1;
     status code = STATUS_OK;
-    if (!s->workers) code = report_set(r, STATUS_SYSTEM, "out of memory for %d threads", s->threads);
+    if (!s->workers || !s->block_shares) code = report_set(r, STATUS_SYSTEM, "out of memory for %d threads", s->threads);
     if (code == STATUS_OK) code = prepare(s, r);
     if (code != STATUS_OK) {
-        if (!s->workers) s->threads = 0;
         destroy(s);
         return NULL;
     }
@@ -273,7 +280,7 @@ static double bytes_per_particle(const solid *s) {
     grid_bytes += constraint_bytes(s);
     double tables = (double)s->tile_capacity * (sizeof *s->tiles + sizeof *s->tile_results) +
                     (double)s->block_capacity * sizeof *s->blocks + (double)s->hash_capacity * 12 +
-                    (double)s->sort_move_capacity * sizeof *s->sort_moves;
+                    (double)s->sort_move_capacity * sizeof *s->sort_moves + (double)s->wait_capacity * sizeof *s->waits;
     return (bytes + grid_bytes + tables) / (double)s->count;
 }
 

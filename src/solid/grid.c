@@ -68,13 +68,13 @@ static status reserve_slots(solid *s, int32_t slots, report *r) {
     s->slot_coordinate = memory_allocate_array(fresh, sizeof *s->slot_coordinate);
     s->grid = memory_allocate_array(fresh, node_bytes);
     s->slot_results = memory_allocate_array(fresh, sizeof *s->slot_results);
-    s->slot_touched = memory_allocate_array(fresh, sizeof *s->slot_touched);
+    s->slot_block = memory_allocate_array(fresh, sizeof *s->slot_block);
     s->slot_damaged = memory_allocate_array(fresh, sizeof *s->slot_damaged);
     if (s->explicit_on) s->damage_grid = memory_allocate_array(fresh, damage_bytes);
     bool flip = s->definition.transfer == TRANSFER_FLIP;
     if (flip) s->old_grid = memory_allocate_array(fresh, node_bytes);
     s->slot_capacity = capacity;
-    if (!s->slot_coordinate || !s->grid || !s->slot_results || !s->slot_touched || !s->slot_damaged || (s->explicit_on && !s->damage_grid) ||
+    if (!s->slot_coordinate || !s->grid || !s->slot_results || !s->slot_block || !s->slot_damaged || (s->explicit_on && !s->damage_grid) ||
         (flip && !s->old_grid))
         return report_set(r, STATUS_SYSTEM, "out of memory for %d grid blocks", capacity);
     return STATUS_OK;
@@ -88,10 +88,10 @@ void grid_free(solid *s) {
     memory_free(s->grid, s->grid ? slots * BLOCK_NODES * NODE * sizeof(real) : 0);
     memory_free(s->old_grid, s->old_grid ? slots * BLOCK_NODES * NODE * sizeof(real) : 0);
     memory_free(s->slot_results, s->slot_results ? slots * sizeof *s->slot_results : 0);
-    memory_free((void *)s->slot_touched, s->slot_touched ? slots * sizeof *s->slot_touched : 0);
+    memory_free(s->slot_block, s->slot_block ? slots * sizeof *s->slot_block : 0);
     memory_free(s->slot_damaged, s->slot_damaged ? slots * sizeof *s->slot_damaged : 0);
     memory_free(s->damage_grid, s->damage_grid ? slots * BLOCK_NODES * DAMAGE_NODE * sizeof(real) : 0);
-    s->slot_coordinate = NULL, s->grid = NULL, s->old_grid = NULL, s->slot_results = NULL, s->damage_grid = NULL, s->slot_touched = NULL, s->slot_damaged = NULL;
+    s->slot_coordinate = NULL, s->grid = NULL, s->old_grid = NULL, s->slot_results = NULL, s->damage_grid = NULL, s->slot_block = NULL, s->slot_damaged = NULL;
     s->slot_capacity = 0;
 }
 
@@ -131,9 +131,8 @@ status grid_build(solid *s, report *r) {
             neighbour_offset(n, o);
             if (s->blocks[b].neighbour[n] == 0) s->blocks[b].neighbour[n] = order_rank(s, neighbour_key(&s->blocks[b], o));
         }
-    colours_assign(s);
     s->constraint.mapped = false;
-    return STATUS_OK;
+    return colours_assign(s, r);
 }
 
 /* ---- the update -------------------------------------------------------------------------------------------------- */

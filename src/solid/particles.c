@@ -76,6 +76,8 @@ void particles_free(solid *s) {
     memory_free(s->tile_results, (size_t)s->result_capacity * sizeof *s->tile_results);
     memory_free(s->blocks, (size_t)s->block_capacity * sizeof *s->blocks);
     memory_free(s->colour_blocks, (size_t)s->colour_capacity * sizeof *s->colour_blocks);
+    memory_free(s->waits, (size_t)s->wait_capacity * sizeof *s->waits);
+    memory_free((void *)s->block_done, (size_t)s->done_capacity * sizeof *s->block_done);
     memory_free(s->block_keys, (size_t)s->hash_capacity * sizeof *s->block_keys);
     memory_free(s->block_ranks, (size_t)s->hash_capacity * sizeof *s->block_ranks);
     memory_free(s->block_list, (size_t)s->block_list_capacity * sizeof *s->block_list);

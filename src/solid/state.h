@@ -57,7 +57,7 @@ typedef struct solid_block {
     int32_t first_tile, tile_count;
     int32_t base_low[3], base_high[3]; /* first kernel nodes that a particle may have before the next sort */
     int32_t neighbour[NEIGHBOURS]; /* grid slots of the blocks around (x slowest); −1 where no kernel can reach */
-    uint8_t turn[NEIGHBOURS];      /* how many blocks of lower colours touch that slot */
+    int32_t waits;                 /* how many blocks it waits for in a pass by colours */
     bool damaged;                  /* some particle of it was at the start of the step */
 } solid_block;
 
@@ -85,6 +85,7 @@ typedef struct solid_worker {
     real damage_window[WINDOW_NODES * DAMAGE_NODE];
     pass_clock clocks[PASSES];
     real implicit_window[WINDOW_NODES * IMPLICIT_WINDOWS]; // of what is solved for on the grid
+    char apart[4096]; // prefetchers of two processors that meet in a page slow both down
 } solid_worker;
 
 /* What the implicit solve needs of a material. */
@@ -182,12 +183,18 @@ struct solid {
     int32_t colour_start[28]; /* blocks of colour c are colour_blocks[colour_start[c] … colour_start[c+1]) */
     int colour_count;
     int32_t *colour_blocks; // [colour_capacity]
-    _Atomic int32_t *slot_touched; // [slot_capacity], blocks that have written to a slot in this pass by colours
+    int32_t *block_shares;  // [threads + 1], each worker's own blocks
+    int32_t *colour_shares; // [colour][threads + 1], the same of each colour's stretch of colour_blocks
+    int32_t wait_limit, wait_capacity, done_capacity;
+    int32_t *waits;                // [block_count][wait_limit], whom each block waits for; of more than one thread
+    _Atomic uint32_t *block_done;  // [done_capacity], the last pass by colours that did it
+    uint32_t pass;
 
     int32_t slot_count, slot_capacity;
     int32_t (*slot_coordinate)[3]; // [slot_capacity], in blocks, sorted
     real *grid;                    // [slot_capacity][BLOCK_NODES][NODE]
     real *old_grid;                // the same before forces, NULL unless the transfer is FLIP
+    int32_t *slot_block;           // [slot_capacity], the block that lies there, −1: none
     bool *slot_damaged;            // [slot_capacity], where damaged particles reach: the damage channel works there alone
     real *damage_grid;             // [slot_capacity][BLOCK_NODES][DAMAGE_NODE], NULL unless some damage is explicit
 
@@ -304,7 +311,7 @@ void grid_collect_results(solid *s); /* adds what the slots' boundaries did to t
 /* colours.c: calls pass(context, block, next, worker) once for each block, `next` being the block that the same worker probably takes then
  * (−1: none). Blocks that share nodes go in the order of their colours, so sums into nodes have one order; others do not wait. */
 typedef void coloured_pass(void *context, int32_t block, int32_t next, int worker);
-void colours_assign(solid *s);
+status colours_assign(solid *s, report *r);
 void colours_pass(solid *s, coloured_pass *pass, void *context);
 /* transfer.c */
 void transfer_to_grid(solid *s, real dt);

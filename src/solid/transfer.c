@@ -248,8 +248,6 @@ SIMD_INLINE void block_to_grid(const transfer_context *t, int32_t block_index, i
 
 /* ---- grid to particles ------------------------------------------------------------------------------------------- */
 
-enum { G2P_CHUNK = 2 /* blocks that a worker takes at once */ };
-
 SIMD_INLINE void gather_tile(const tile_work *w, const pack_stream *stream, kernel_kind kernel, const node_row node_offset, const real *window) {
     for (int k = 0; k < w->tile->pack_count; k++) {
         int end = (k + 1) * PACK < w->tile->count ? (k + 1) * PACK : w->tile->count;
@@ -423,7 +421,7 @@ SIMD_INLINE void block_to_particles(const transfer_context *t, int32_t block_ind
     bool wide = kernels_are_wide(kernel, laplacian, damage);
     const real offsets[4] = {0, 1, 2, 3};
     node_row node_offset = row_spread(offsets);
-    bool follows = block_index + 1 < s->block_count && (s->threads == 1 || (block_index + 1) % G2P_CHUNK != 0);
+    bool follows = block_index + 1 < s->block_shares[worker + 1] && block_index >= s->block_shares[worker];
     pack_stream stream = stream_packs(s, block_index, follows ? block_index + 1 : -1);
     exchange_window(b, own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, false);
     if (s->old_grid) exchange_window(b, own->old_window, s->old_grid, NODE, BLOCK_NODES * NODE, wide, false);
@@ -495,7 +493,7 @@ static void clear_slot(void *context, int64_t slot, int worker) {
 }
 
 void transfer_to_grid(solid *s, real dt) {
-    parallel_for(s->threads, s->slot_count, 64, clear_slot, s);
+    parallel_for(s->threads, s->slot_count, 16, clear_slot, s);
     s->looks++;
     if (s->damage_grid) mark_damage(s);
     transfer_context t = {.state = s, .dt = dt};
@@ -504,7 +502,7 @@ void transfer_to_grid(solid *s, real dt) {
 
 void transfer_to_particles(solid *s, real dt) {
     transfer_context t = {.state = s, .dt = dt};
-    parallel_for(s->threads, s->block_count, G2P_CHUNK, to_particles[s->definition.kernel == KERNEL_CUBIC][damage_instance(s)], &t);
+    parallel_stages(s->threads, 1, s->block_shares, to_particles[s->definition.kernel == KERNEL_CUBIC][damage_instance(s)], &t);
 }
 
 static void limit_tile(void *context, int64_t i, int worker) {

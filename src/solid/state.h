@@ -66,7 +66,8 @@ typedef struct tile_scratch {
     real kirchhoff[TILE_PACKS * 6 * PACK];    // xx yy zz xy yz xz of τ = P Fᵀ
     real degradation[TILE_PACKS * PACK];      // g(d); 1 where nothing degrades
     real laplacian[TILE_PACKS * PACK];        // Δd, per length²
-    real wave_modulus[TILE_PACKS * PACK];     // ρ0 c², summed over effects
+    real wave_tensor[TILE_PACKS * 6 * PACK];  // xx yy zz xy yz xz of T: a wave along n has ρ0 c² ≤ n·T n + wave_modulus; summed over effects
+    real wave_modulus[TILE_PACKS * PACK];     // what it has along any n
     real old_velocity[TILE_PACKS * 3 * PACK]; // FLIP: the grid's velocity before forces, at the particles
     real records[TILE_PARTICLES * 32];        // per particle, for scatter and gather
     double *lap;                              // [EFFECT_LIMIT], seconds of each effect's stages; NULL: nobody looks at the clock
@@ -251,7 +252,7 @@ typedef struct solid_stages {
     void (*degrade)(tile_work *w);    /* before forces: fills scratch->degradation */
     void (*stress)(tile_work *w);     /* forces: adds to scratch->kirchhoff */
     void (*update)(tile_work *w);     /* after F: histories; sees scratch->laplacian */
-    void (*wave)(tile_work *w);       /* after update: adds to scratch->wave_modulus */
+    void (*wave)(tile_work *w);       /* after update: adds to scratch->wave_tensor and wave_modulus */
     void (*grid)(const grid_work *w); /* on velocities */
     void (*energy)(tile_work *w);     /* measures */
     /* For elements of a mesh, whose F comes from their corners and may be singular: P itself, added to `piola` (τ F⁻ᵀ is lost there); and a

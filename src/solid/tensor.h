@@ -123,6 +123,42 @@ SIMD_INLINE vec3v sym3v_times(sym3v s, vec3v n) {
                    vec_fma(s.xz, n.x, vec_fma(s.yz, n.y, s.zz * n.z))};
 }
 
+/* Six components at `base` [TILE_PACKS][6][PACK] += a S. */
+SIMD_INLINE void sym3v_add_to(real *base, int k, int part, vec a, sym3v S) {
+    const vec value[6] = {S.xx, S.yy, S.zz, S.xy, S.yz, S.xz};
+    for (int c = 0; c < 6; c++) {
+        real *to = scratch_at(base, 6, k, c, part);
+        vec_store(to, vec_fma(a, value[c], vec_load(to)));
+    }
+}
+
+SIMD_INLINE sym3v sym3v_scratch(real *base, int k, int part) {
+    return (sym3v){vec_load(scratch_at(base, 6, k, 0, part)), vec_load(scratch_at(base, 6, k, 1, part)), vec_load(scratch_at(base, 6, k, 2, part)),
+                   vec_load(scratch_at(base, 6, k, 3, part)), vec_load(scratch_at(base, 6, k, 4, part)), vec_load(scratch_at(base, 6, k, 5, part))};
+}
+
+/* The largest eigenvalue, from above by at most 1 %: m + 2 p h, m the mean, 6 p² = |S − m I|², and h in [½, 1] the largest root of
+ * 4h³ − 3h = det(S − m I)/(2p³). Three tangents bound the root, and Newton's steps come down to it without passing it. */
+SIMD_INLINE vec sym3v_largest(sym3v s) {
+    const vec one = vec_all(1);
+    vec mean = (s.xx + s.yy + s.zz) * (real)(1.0 / 3);
+    vec x = s.xx - mean, y = s.yy - mean, z = s.zz - mean;
+    vec off = vec_fma(s.xy, s.xy, vec_fma(s.yz, s.yz, s.xz * s.xz));
+    vec p = vec_sqrt(vec_fma(x, x, vec_fma(y, y, vec_fma(z, z, off + off))) * (real)(1.0 / 6));
+    vec inverse = 1 / vec_max(p, mean * (real)1e-6 + (real)1e-30);
+    x *= inverse, y *= inverse, z *= inverse;
+    vec xy = s.xy * inverse, yz = s.yz * inverse, xz = s.xz * inverse;
+    vec det = x * vec_fma(y, z, -(yz * yz)) - xy * vec_fma(xy, z, -(yz * xz)) + xz * vec_fma(xy, yz, -(y * xz));
+    vec r = vec_min(vec_max((real)0.5 * det, -one), one);
+    vec h = vec_min(vec_fma(r - 1, vec_all((real)(1.0 / 9)), one),
+                    vec_min(vec_fma(r, vec_all((real)(1.0 / 6)), vec_all((real)0.8660255)), vec_fma(r + (real)0.9, vec_all((real)0.59736), vec_all((real)0.62415))));
+    for (int i = 0; i < 2; i++) {
+        vec square = h * h;
+        h = vec_fma(8 * square, h, r) / vec_fma(vec_all(12), square, vec_all(-3));
+    }
+    return vec_fma(p + p, h, mean);
+}
+
 /* An upper bound of the largest eigenvalue of a positive semi-definite tensor: the lesser of trace and largest row sum. */
 SIMD_INLINE vec sym3v_largest_bound(sym3v s) {
     vec xy = vec_abs(s.xy), yz = vec_abs(s.yz), xz = vec_abs(s.xz);

@@ -397,6 +397,7 @@ static void limit_momentum(tile_work *w) {
     const solid *s = w->state;
     fill(w->scratch->degradation, w->tile->pack_count * PACK, 1);
     CALL_STAGE(w, degrade); /* of the new damage */
+    fill(w->scratch->wave_tensor, w->tile->pack_count * 6 * PACK, 0);
     fill(w->scratch->wave_modulus, w->tile->pack_count * PACK, 0);
     CALL_STAGE(w, wave);
     vec fastest = vec_all(0);
@@ -405,7 +406,7 @@ static void limit_momentum(tile_work *w) {
         for (int part = 0; part < PACK_PARTS; part++) {
             int32_t pack = w->tile->first_pack + k;
             vec3v v = vec3v_load(&s->fields[FIELD_VELOCITY], pack, part);
-            vec modulus = vec_load(scratch_at(w->scratch->wave_modulus, 1, k, 0, part));
+            vec modulus = vec_load(scratch_at(w->scratch->wave_modulus, 1, k, 0, part)) + sym3v_largest(sym3v_scratch(w->scratch->wave_tensor, k, part));
             vec square = scaled_down(s, s->density_scale, pack, part, modulus * inverse_density);
             vec speed = vec_sqrt(square) + vec_sqrt(vec3v_dot(v, v));
             vec volume = vec_load(field_at(&s->fields[FIELD_VOLUME], pack, 0, part));

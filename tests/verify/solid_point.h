@@ -99,13 +99,14 @@ static inline double point_energy(material_point *p) {
 static inline double point_wave(material_point *p) {
     real constants[CONSTANTS];
     point_degrade(p);
+    memset(p->scratch.wave_tensor, 0, sizeof p->scratch.wave_tensor);
     memset(p->scratch.wave_modulus, 0, sizeof p->scratch.wave_modulus);
     for (int e = 0; e < SOLID_EFFECTS; e++) {
         if (!p->values[e].on || !point_effects[e]->stages->wave) continue;
         tile_work w = point_work(p, point_effects[e], e, constants, 0);
         point_effects[e]->stages->wave(&w);
     }
-    return p->scratch.wave_modulus[0];
+    return p->scratch.wave_modulus[0] + sym3v_largest(sym3v_scratch(p->scratch.wave_tensor, 0, 0))[0];
 }
 
 #endif

@@ -110,8 +110,8 @@ static void stiffness(tile_work *w) {
         }
 }
 
-/* ρ0 c² ≤ 2 g μ |F|₂² + g₊ λ J². A wave along n polarised along a varies F by D = a (Fᵀ n)ᵀ. Of Ψμ = μ (|F|² − 2 max_R R:F + 3) the first
- * term's second variation is 2μ |D|² ≤ 2μ |F|₂²; the second term is a maximum of linear functions, convex, and enters with a
+/* ρ0 c² ≤ 2 g μ n·b n + g₊ λ J². A wave along n polarised along a varies F by D = a (Fᵀ n)ᵀ. Of Ψμ = μ (|F|² − 2 max_R R:F + 3) the first
+ * term's second variation is 2μ |D|² = 2μ n·b n; the second term is a maximum of linear functions, convex, and enters with a
  * minus: it never adds. J is linear along D, and cof F : D = J a·n, so Ψλ gives λ J² (a·n)². At rest the bound is λ + 2μ: sharp. */
 static void wave(tile_work *w) {
     const solid_field *F_field = &w->state->fields[FIELD_DEFORMATION];
@@ -121,9 +121,10 @@ static void wave(tile_work *w) {
             mat3v F = mat3v_load(F_field, w->tile->first_pack + k, part);
             vec g = vec_load(scratch_at(w->scratch->degradation, 1, k, 0, part));
             vec J = mat3v_determinant(F);
-            vec shear = 2 * mu * g * sym3v_largest_bound(mat3v_gram(F)), bulk = degraded_lambda(J, g, lambda) * J * J;
+            vec bulk = degraded_lambda(J, g, lambda) * J * J;
             real *modulus = scratch_at(w->scratch->wave_modulus, 1, k, 0, part);
-            vec_store(modulus, vec_load(modulus) + stiffened(w, k, part, shear + bulk));
+            vec_store(modulus, vec_load(modulus) + stiffened(w, k, part, bulk));
+            sym3v_add_to(w->scratch->wave_tensor, k, part, stiffened(w, k, part, 2 * mu * g), mat3v_gram(F));
         }
 }
 

@@ -66,7 +66,7 @@ static void stiffness(tile_work *w) {
         }
 }
 
-/* ρ0 c² ≤ g μ |F|₂² + g₊ λ J²: acoustic tensor of this energy in space (METHOD.md §3). */
+/* Acoustic tensor of this energy in space (METHOD.md §3): of a wave along n, polarised along a, g μ n·b n + g₊ λ J² (a·n)². */
 static void wave(tile_work *w) {
     const solid_field *F_field = &w->state->fields[FIELD_DEFORMATION];
     real mu = w->constants[MU], lambda = w->constants[LAMBDA];
@@ -75,10 +75,10 @@ static void wave(tile_work *w) {
             mat3v F = mat3v_load(F_field, w->tile->first_pack + k, part);
             vec g = vec_load(scratch_at(w->scratch->degradation, 1, k, 0, part));
             vec J = mat3v_determinant(F);
-            vec shear = g * mu * sym3v_largest_bound(mat3v_gram(F));
             vec bulk = volumetric_degradation(J, g) * lambda * J * J;
             real *modulus = scratch_at(w->scratch->wave_modulus, 1, k, 0, part);
-            vec_store(modulus, vec_load(modulus) + stiffened(w, k, part, shear + bulk));
+            vec_store(modulus, vec_load(modulus) + stiffened(w, k, part, bulk));
+            sym3v_add_to(w->scratch->wave_tensor, k, part, stiffened(w, k, part, g * mu), mat3v_gram(F));
         }
 }
 

@@ -86,7 +86,7 @@ static void stiffness(tile_work *w) {
         }
 }
 
-/* ρ0 c² grows by k ℓ². */
+/* A wave along n stretches the fibres by (f·n) at most, f = F a: ρ0 c² grows by k (f·n)². */
 static void add_wave(tile_work *w, int field, real stiffness) {
     if (field < 0 || stiffness == 0) return;
     for (int k = 0; k < w->tile->pack_count; k++)
@@ -94,8 +94,8 @@ static void add_wave(tile_work *w, int field, real stiffness) {
             int32_t pack = w->tile->first_pack + k;
             vec3v f = mat3v_times(mat3v_load(&w->state->fields[FIELD_DEFORMATION], pack, part),
                                   vec3v_load(&w->state->fields[field], pack, part));
-            real *modulus = scratch_at(w->scratch->wave_modulus, 1, k, 0, part);
-            vec_store(modulus, vec_load(modulus) + stiffened(w, field, pack, part, stiffness * vec3v_dot(f, f)));
+            sym3v square = {f.x * f.x, f.y * f.y, f.z * f.z, f.x * f.y, f.y * f.z, f.x * f.z};
+            sym3v_add_to(w->scratch->wave_tensor, k, part, stiffened(w, field, pack, part, vec_all(stiffness)), square);
         }
 }
 

@@ -22,15 +22,3 @@ foreach(simd ${MATH_SIMD})
     set_tests_properties(${name} PROPERTIES SKIP_RETURN_CODE 77)
   endforeach()
 endforeach()
-
-# Not a test: how long a stress takes.
-foreach(precision 32 64)
-  add_library(bench_constitutive_f${precision} OBJECT ${CMAKE_SOURCE_DIR}/tests/bench/constitutive_kernels.c)
-  target_include_directories(bench_constitutive_f${precision} PRIVATE ${CMAKE_SOURCE_DIR}/tests)
-  target_compile_definitions(bench_constitutive_f${precision} PRIVATE SUNDER_PRECISION=${precision})
-  target_link_libraries(bench_constitutive_f${precision} PRIVATE sunder_solid)
-endforeach()
-add_executable(bench_constitutive ${CMAKE_SOURCE_DIR}/tests/bench/constitutive.c $<TARGET_OBJECTS:bench_constitutive_f32>
-               $<TARGET_OBJECTS:bench_constitutive_f64>)
-target_include_directories(bench_constitutive PRIVATE ${CMAKE_SOURCE_DIR}/tests)
-target_link_libraries(bench_constitutive PRIVATE sunder_solid)

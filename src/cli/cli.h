@@ -52,6 +52,9 @@ int command_bench_table1(int count, char **arguments);
 /* command_bench_constraint.c: `bench constraint`, likewise. */
 int command_bench_constraint(int count, char **arguments);
 
+/* command_bench_constitutive.c: `bench constitutive`, likewise. */
+int command_bench_constitutive(int count, char **arguments);
+
 /* Prints a report as one line on standard error, after "sunder: ", and returns its exit code. */
 int cli_fail(const report *r);
 

@@ -134,9 +134,9 @@ static int parse(bench_request *q, int count, char **arguments) {
         int code = parse_option(q, option);
         if (code) return code;
     }
-    if (optind != count - 1) return cli_usage("bench", "expected what to measure: step, sheet, table1, or constraint as its first argument");
+    if (optind != count - 1) return cli_usage("bench", "expected what to measure: step, sheet, table1, constraint, or constitutive as its first argument");
     q->sheet = strcmp(arguments[optind], "sheet") == 0;
-    if (!q->sheet && strcmp(arguments[optind], "step") != 0) return cli_usage("bench", "%s: expected step, sheet, table1, or constraint as its first argument", arguments[optind]);
+    if (!q->sheet && strcmp(arguments[optind], "step") != 0) return cli_usage("bench", "%s: expected step, sheet, table1, constraint, or constitutive as its first argument", arguments[optind]);
     if (q->sheet && (q->case_count || q->csv)) return cli_usage("bench", "sheet: --case and --csv belong to step");
     if (!q->sheet && q->lammps) return cli_usage("bench", "step: --against belongs to sheet");
     complete(q);
@@ -352,6 +352,7 @@ int command_bench(int count, char **arguments) {
     q.options = bench_options_default();
     if (count > 1 && strcmp(arguments[1], "table1") == 0) return command_bench_table1(count - 1, arguments + 1);
     if (count > 1 && strcmp(arguments[1], "constraint") == 0) return command_bench_constraint(count - 1, arguments + 1);
+    if (count > 1 && strcmp(arguments[1], "constitutive") == 0) return command_bench_constitutive(count - 1, arguments + 1);
     int code = parse(&q, count, arguments);
     if (code) return code;
     if (q.sheet)

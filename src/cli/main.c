@@ -37,8 +37,10 @@ static const command commands[] = {
               "         sheet also: [--against lammps]\n"
               "         bench table1 [--paper solid|sheet|both] [--row NAME]… [--frames N] [--warm N] [--paper-dt] [--scale F] [--time-limit S] [--threads N]\n"
               "                      [--precision f32|f64] [--scenes DIR] [--json]\n"
-              "         bench constraint [--scene lance|hanging_torus] [--particles N] [--frames N] [--warm N] [--threads N] [--scenes DIR] [--json]",
-     "measure how fast steps are, beside what the machine could do; table1: seconds a frame, beside the papers'; constraint: inextensible fibres' solvers", command_bench},
+              "         bench constraint [--scene lance|hanging_torus] [--particles N] [--frames N] [--warm N] [--threads N] [--scenes DIR] [--json]\n"
+              "         bench constitutive [--count N] [--json]",
+     "measure how fast steps are, beside what the machine could do; table1: seconds a frame, beside the papers'; constraint: inextensible fibres' solvers;\n"
+     "      constitutive: one stress, beside the paper's form and fixed-corotated", command_bench},
     {"help", "help [effects | actions] [--json]", "list the commands, all effects with their parameters, or all that the workbench can do", command_help},
 };
 

@@ -226,6 +226,24 @@ def test_constraint():
     check(call("constraint", "--scene", "torus")[0] == 2, "a scene that is none of them")
 
 
+def test_constitutive():
+    code, out, err = call("constitutive", "--json", "--count", "10000")
+    check(code == 0, f"exit code {code}: {err}")
+    result = json.loads(out)
+    rows = result["rows"]
+    check({(r["precision"], r["model"]) for r in rows} == {(p, m) for p in ("f32", "f64") for m in ("closed form", "QR form", "fixed-corotated")}, "models")
+    check(all(r["count"] >= 10000 and r["ns"] > 0 for r in rows), f"as many as asked for: {rows}")
+    builds = [r for r in rows if r["build"] != "scalar"]
+    check(len(builds) == 8 and all(r["difference"] < (1e-3 if r["precision"] == "f32" else 1e-9) for r in builds), f"builds agree: {builds}")
+    qr = [r for r in rows if r["model"] == "QR form"]
+    check(all(r["difference"] < (1e-3 if r["precision"] == "f32" else 1e-9) for r in qr), f"the paper's form is the closed form: {qr}")
+    for precision in ("f32", "f64"):
+        ns = {(r["build"], r["model"]): r["ns"] for r in rows if r["precision"] == precision}
+        expected = ns["scalar", "fixed-corotated"] / ns["scalar", "QR form"]
+        check(abs(result["ratios"][precision]["corotated_over_qr_scalar"] / expected - 1) < 1e-6, "the ratio is that of the rows")
+    check(call("constitutive", "--count", "0")[0] == 2 and call("constitutive", "elastic")[0] == 2, "wrong arguments")
+
+
 def test_table1_wrong_arguments():
     for arguments, expected in ((["--row", "tube_pul"], "did you mean tube_pull"), (["--paper", "solids"], "solid, sheet or both"),
                                 (["--scale", "0"], "a number"), (["--frames", "0"], "whole number"), (["tube_pull"], "--row"),

@@ -1,12 +1,12 @@
 /* The contestants: stress stages of the engine's builds, a tile at a time as in a step, and scalar code, an F at a time. The layout of
  * tiles depends on the precision alone, so this file, built plain, drives every instruction set's stages. */
 #define SUNDER_SIMD 0
-#include "bench/constitutive.h"
+#include "sim/bench_constitutive.h"
 
+#include "base/memory.h"
 #include "base/random.h"
 #include "solid/state.h"
 
-#include <stdlib.h>
 #include <time.h>
 
 enum { TILES = 32, PACKS = TILES * TILE_PACKS, CHUNK = PACKS * PACK }; /* F and τ of a chunk stay in the second-level cache */
@@ -175,7 +175,7 @@ static void fill(bench_state *b, int64_t chunk) {
         }
 }
 
-static void measure_chunk(bench_state *b, const solid_engine *best, const solid_engine *plain, bench_result *out) {
+static void measure_chunk(bench_state *b, const solid_engine *best, const solid_engine *plain, constitutive_result *out) {
     static scalar_stress *const scalars[] = {scalar_closed, scalar_qr, scalar_corotated};
     double *ns = out->nanoseconds, *difference = out->difference;
     for (int model = 0; model < 2; model++) {
@@ -199,26 +199,30 @@ static void measure_chunk(bench_state *b, const solid_engine *best, const solid_
 #define BENCH bench_constitutive_f64
 #endif
 
-bench_result BENCH(int64_t count) {
-    const solid_engine *best = solid_engine_find(SUNDER_PRECISION, "auto"), *plain = solid_engine_find(SUNDER_PRECISION, "plain");
-    bench_result out = {.simd = best->simd};
-    bench_state *b = aligned_alloc(64, (sizeof *b + 63) / 64 * 64);
-    memset(b, 0, sizeof *b);
+static void set_up(bench_state *b, const solid_engine *engine) {
     double E = 100, nu = 0.3, mu = E / (2 * (1 + nu)), lame_lambda = E * nu / ((1 + nu) * (1 - 2 * nu));
     b->mu = (real)mu, b->lame_lambda = (real)lame_lambda, b->lambda = (real)(lame_lambda + mu);
-    for (int e = 0; e < best->effect_count; e++) effect_values_default(best->effects[e], &b->values[e]);
+    for (int e = 0; e < engine->effect_count; e++) effect_values_default(engine->effects[e], &b->values[e]);
     for (int k = 0; k < 2; k++) {
         effect_values *v = &b->values[k ? EFFECT_corotated : EFFECT_elastic];
         v->value[0][0] = E, v->value[1][0] = nu;
     }
     b->state.fields[FIELD_DEFORMATION] = (solid_field){"deformation_gradient", 9, b->deformation};
     for (int i = 0; i < TILE_PARTICLES; i++) b->scratch.degradation[i] = 1;
+}
+
+status BENCH(int64_t count, constitutive_result *out, report *r) {
+    const solid_engine *best = solid_engine_find(SUNDER_PRECISION, "auto"), *plain = solid_engine_find(SUNDER_PRECISION, "plain");
+    bench_state *b = memory_allocate(sizeof *b);
+    if (!b) return report_set(r, STATUS_SYSTEM, "out of memory for %d deformations", CHUNK);
+    set_up(b, best);
     int64_t chunks = (count + CHUNK - 1) / CHUNK;
+    *out = (constitutive_result){.simd = best->simd, .count = chunks * CHUNK};
     for (int64_t chunk = 0; chunk < chunks; chunk++) {
         fill(b, chunk);
-        measure_chunk(b, best, plain, &out);
+        measure_chunk(b, best, plain, out);
     }
-    for (int row = 0; row < BENCH_ROWS; row++) out.nanoseconds[row] /= (double)(chunks * CHUNK);
-    free(b);
-    return out;
+    for (int i = 0; i < CONTESTANTS; i++) out->nanoseconds[i] /= (double)out->count;
+    memory_free(b, sizeof *b);
+    return STATUS_OK;
 }

@@ -260,7 +260,7 @@ static void print_heading(const table1_request *q, const machine *here, FILE *ou
             q->paper_dt ? "the paper's step where our limits allow it" : "our own step, the largest that our limits allow");
     fprintf(out, "Seconds are a frame's, of steps alone, the median of the frames timed; of sheets those of %d steps.\n", TABLE1_SHEET_STEPS);
     if (q->scale != 1) fprintf(out, "Particle counts are %g times the paper's: seconds cannot be compared.\n", q->scale);
-    fprintf(out, "\n%-14s %9s %9s %9s %9s %7s %3s %7s %7s %9s %9s %6s %7s %8s %7s %7s\n", "row", "particles", "paper s", "ours s", "whole s",
+    fprintf(out, "\n%-18s %9s %9s %9s %9s %7s %3s %7s %7s %9s %9s %6s %7s %8s %7s %7s\n", "row", "particles", "paper s", "ours s", "whole s",
             "faster", "thr", "steps", "paper's", "dt", "paper's", "M/s", "paper's", "frames", "damage", "broken");
     fflush(out);
 }
@@ -275,7 +275,7 @@ static void print_start(const measured_row *m, FILE *out) {
 static void print_row(const table1_request *q, const measured_row *m, FILE *out) {
     const table1_row *row = m->row;
     const scene_timing *t = &m->timing;
-    fprintf(out, "%-14s ", row->name);
+    fprintf(out, "%-18s ", row->name);
     if (m->outcome != TIMED) {
         fprintf(out, "%9ld %9.4g  %s\n", row->particles, row->seconds, outcome_name(m));
     } else {
@@ -288,7 +288,7 @@ static void print_row(const table1_request *q, const measured_row *m, FILE *out)
                 t->extrapolated ? "~" : " ", our_seconds(m), whole, faster, t->threads, t->steps, steps, t->dt, row->dt,
                 1e-6 * our_rate(m), 1e-6 * paper_rate(row), t->extrapolated ? "part" : frames, t->damage_max, t->broken_fraction);
     }
-    if (m->note[0]) fprintf(out, "               %s\n", m->note);
+    if (m->note[0]) fprintf(out, "                   %s\n", m->note);
     fflush(out);
 }
 

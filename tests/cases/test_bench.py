@@ -116,7 +116,8 @@ def test_sheet_against_lammps():
 PAPER = {
     "meat": (500e3, 19.30, 5e-4, 24), "tube_pull": (50e3, 1.403, 1e-3, 24), "tube_compress": (400e3, 83.36, 1e-4, 24),
     "pork_belly": (500e3, 38.78, 2.5e-4, 24), "orange": (80e3, 4.890, 1e-3, 24), "fish": (50e3, 0.5625, 1e-3, 48),
-    "cheese": (500e3, 48.87, 2e-4, 24), "lance": (650e3, 111.9, 1.25e-4, 24), "heart": (500e3, 23.88, 5.1e-4, 24),
+    "cheese": (500e3, 48.87, 2e-4, 24), "lance": (650e3, 111.9, 1.25e-4, 24),
+    "lance_inextensible": (650e3, 111.9, 1.25e-4, 24), "heart": (500e3, 23.88, 5.1e-4, 24),
     "bone": (200e3, 1974, 1e-6, 48),
     "stretch": (10e3, 0.2, 1e-4, None), "shear": (10e3, 0.2, 1e-4, None), "crack_path": (10e3, 0.2, 1e-4, None),
     "foil": (2.5e3, 0.6, 3e-4, None), "rubber": (2.5e3, 0.2, 5e-4, None), "seaweed": (2.5e3, 0.2, 1e-4, None),

@@ -38,6 +38,7 @@ return s.scene {
   gravity = { 0, -9.8, 0 },
 
   transfer = "pic",
+  cfl      = 0.7, -- what is damped so may take longer steps than a half: nearer to the paper's
 
   solids = {
     {

@@ -35,6 +35,7 @@ return s.scene {
 
   transfer       = "rpic",
   transfer_ratio = 0.01,
+  cfl            = 0.7, -- what is damped so may take longer steps than a half: nearer to the paper's
 
   solids = {
     {

@@ -2,17 +2,18 @@
 #ifndef SUNDER_TUI_COMPARE_H
 #define SUNDER_TUI_COMPARE_H
 
-#include "session/player.h"
 #include "store/ledger.h"
 #include "tui/app.h"
+#include "tui/frame_reader.h"
 #include "tui/particle_view.h"
 
-enum { COMPARE_SIDES = 2, COMPARE_BINS = 50, COMPARE_TEXT = 512 };
+enum { COMPARE_SIDES = 2, COMPARE_RUNS = 100, COMPARE_BINS = 50, COMPARE_TEXT = 512 };
 
 typedef struct compare_side {
     char id[LEDGER_ID], folder[TUI_PATH], title[192];
-    frame_player *player; /* NULL: no run is chosen, or it has no frames */
-    frame_view shown;     /* of the player, valid while has_frame */
+    frame_reader *reader;
+    bool grown;       /* the run may have more frames than its reader has seen */
+    frame_view shown; /* the reader's, valid while has_frame */
     bool has_frame;
     char problem[256];               /* why there is nothing to see; "" when there is */
     double histogram[COMPARE_BINS];  /* shares of particles over the colour scale */
@@ -28,7 +29,9 @@ typedef struct compare_state {
     bool log_histogram;
     char colour[32];  /* the quantity; "" the first run's own */
     view_scale scale; /* of both, over all frames seen */
-    bool stale;       /* other frames are to be read */
+    bool stale;       /* other frames are to be asked for */
+    char runs[COMPARE_RUNS][LEDGER_ID]; /* that can be completed to, the newest first */
+    int run_count;
     char differs[COMPARE_TEXT]; /* parameters and turns that are not the same */
 } compare_state;
 
@@ -40,8 +43,14 @@ status compare_choose(tui_app *app, compare_state *state, int side, const char *
 /* The frames that both have: first and last; false when there is none. */
 bool compare_range(const compare_state *state, int64_t *first, int64_t *last);
 
-/* Reads what is to be shown, if that has changed. */
-void compare_read(compare_state *state);
+/* What has been read of a side's run; NULL while there is nothing. */
+const frame_page *compare_page(const compare_side *side);
+
+/* Asks for what is to be shown, if that has changed. */
+void compare_ask(compare_state *state);
+
+/* Takes over what has been read since; true when there was something. */
+bool compare_take(compare_state *state);
 
 void compare_draw(tui_app *app, void *state, tui_area area);
 

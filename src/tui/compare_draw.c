@@ -28,7 +28,7 @@ static void draw_name(tui_app *app, const compare_side *side, tui_area area, con
 
 static void draw_side(tui_app *app, compare_state *state, compare_side *side, tui_area area) {
     if (!side->has_frame) {
-        const char *text = side->problem[0] ? side->problem : "A and B choose a run";
+        const char *text = side->problem[0] ? side->problem : side->id[0] ? "reading its frames …" : "A and B choose a run";
         draw_paragraph(&app->theme, (tui_area){area.y, area.x + 1, area.height, area.width - 2}, area.height / 2, 3, STYLE_DIM, text);
         return;
     }

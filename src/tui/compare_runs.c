@@ -5,8 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { CACHE_BYTES = 96 << 20 };
-
 /* ---- what differs ------------------------------------------------------------------------------------------------ */
 
 /* Appends "name left → right" for parameters, "@frame path = value" for turns that only one of the two has. */
@@ -48,21 +46,9 @@ static status take_title(void *context, const ledger_cell *cells, int count, rep
     return STATUS_OK;
 }
 
-static void close_side(compare_side *side) {
-    if (side->player) frame_player_close(side->player);
-    side->player = NULL;
-    side->has_frame = false;
-    side->id[0] = side->title[0] = '\0';
-}
-
-/* A run that has no frames yet is a choice all the same: they will come. */
 static void open_side(compare_state *state, compare_side *side) {
-    report r;
     side->problem[0] = '\0';
-    if (frame_player_open(side->folder, CACHE_BYTES, &side->player, &r) != STATUS_OK) {
-        side->player = NULL;
-        report_format(&r, side->problem, sizeof side->problem);
-    }
+    side->has_frame = side->grown = false;
     state->scale = (view_scale){0, 0};
     state->stale = true;
     particle_view_forget(&state->sides[0].view);
@@ -76,7 +62,6 @@ status compare_choose(tui_app *app, compare_state *state, int which, const char 
     status s = app_open_ledger(app, &l, r);
     if (s == STATUS_OK) s = ledger_resolve(l, run, id, folder, sizeof folder, r);
     if (s == STATUS_OK) {
-        close_side(side);
         memcpy(side->id, id, sizeof id);
         memcpy(side->folder, folder, sizeof folder);
         snprintf(argument, sizeof argument, "id=%s", id);
@@ -90,41 +75,23 @@ status compare_choose(tui_app *app, compare_state *state, int which, const char 
 
 /* ---- frames ------------------------------------------------------------------------------------------------------ */
 
+const frame_page *compare_page(const compare_side *side) {
+    const frame_page *page = frame_reader_page(side->reader);
+    return side->id[0] && strcmp(page->folder, side->folder) == 0 ? page : NULL;
+}
+
 bool compare_range(const compare_state *state, int64_t *first, int64_t *last) {
     bool any = false;
     *first = *last = 0;
     for (int i = 0; i < COMPARE_SIDES; i++) {
-        const frame_player *p = state->sides[i].player;
-        int count = p ? frame_player_count(p) : 0;
-        if (count == 0) continue;
-        int64_t low = frame_player_number(p, 0), high = frame_player_number(p, count - 1);
+        const frame_page *page = compare_page(&state->sides[i]);
+        if (!page || page->frame_count == 0) continue;
+        int64_t low = page->frames[0], high = page->frames[page->frame_count - 1];
         *first = any && *first > low ? *first : low;
         *last = any && *last < high ? *last : high;
         any = true;
     }
     return any && *last >= *first;
-}
-
-static bool has_field(const frame_player *p, const char *name) {
-    for (int i = 0; frame_player_field(p, i); i++) {
-        if (strcmp(frame_player_field(p, i), name) == 0) return true;
-    }
-    return false;
-}
-
-/* The frame, or the last one before it that the run has. */
-static void read_side(compare_state *state, compare_side *side) {
-    report r;
-    side->has_frame = false;
-    if (!side->player) return;
-    if (!state->colour[0]) snprintf(state->colour, sizeof state->colour, "%s", frame_player_default_field(side->player));
-    const char *field = has_field(side->player, state->colour) ? state->colour : NULL;
-    int64_t frame = frame_player_number(side->player, frame_player_index(side->player, state->frame));
-    side->has_frame = frame_player_read(side->player, frame, field, &side->shown, &r) == STATUS_OK;
-    side->problem[0] = '\0';
-    if (!side->has_frame) report_format(&r, side->problem, sizeof side->problem);
-    else if (side->shown.value)
-        state->scale = view_scale_join(state->scale, (view_scale){(double)side->shown.low, (double)side->shown.high});
 }
 
 static void count_histogram(const view_scale scale, compare_side *side) {
@@ -151,25 +118,59 @@ static void follow(compare_state *state) {
     particle_view *first = &state->sides[0].view;
     for (int i = 0; i < COMPARE_SIDES; i++) {
         compare_side *side = &state->sides[i];
-        float low[3] = {0}, high[3] = {1, 1, 1};
-        report unused;
-        if (!side->has_frame) continue;
+        const frame_page *page = compare_page(side);
+        if (!side->has_frame || !page) continue;
         particle_points points = points_of(state, side);
-        (void)frame_player_bounds(side->player, low, high, &unused);
-        particle_view_follow(first, &points, low, high);
+        particle_view_follow(first, &points, page->low, page->high);
     }
     particle_view_match(&state->sides[1].view, first);
     for (int i = 0; i < COMPARE_SIDES; i++) count_histogram(first->scale, &state->sides[i]);
 }
 
-void compare_read(compare_state *state) {
+/* The frame to be shown, where the runs' frames are known: one that both have. */
+static bool settle_frame(compare_state *state) {
+    int64_t first, last, before = state->frame;
+    if (!compare_range(state, &first, &last)) return false;
+    if (state->follows || state->frame > last) state->frame = last;
+    if (state->frame < first) state->frame = first;
+    return state->frame != before;
+}
+
+void compare_ask(compare_state *state) {
     if (!state->stale) return;
     state->stale = false;
-    int64_t first, last;
-    if (compare_range(state, &first, &last)) {
-        if (state->follows || state->frame > last) state->frame = last;
-        if (state->frame < first) state->frame = first;
+    (void)settle_frame(state);
+    for (int i = 0; i < COMPARE_SIDES; i++) {
+        compare_side *side = &state->sides[i];
+        if (side->id[0]) frame_reader_ask(side->reader, side->folder, state->frame, state->colour, side->grown);
+        side->grown = false;
     }
-    for (int i = 0; i < COMPARE_SIDES; i++) read_side(state, &state->sides[i]);
-    follow(state);
+}
+
+static void take_page(compare_state *state, compare_side *side, const frame_page *page) {
+    side->has_frame = page->has_frame;
+    side->shown = page->view;
+    snprintf(side->problem, sizeof side->problem, "%.255s", page->problem);
+    if (!page->has_frame) return;
+    if (!state->colour[0] && page->field[0]) { /* the first run's own, of both */
+        memcpy(state->colour, page->field, sizeof state->colour);
+        state->stale = true;
+    }
+    if (strcmp(page->field, state->colour) != 0) side->shown.value = NULL;
+    if (side->shown.value) state->scale = view_scale_join(state->scale, (view_scale){(double)side->shown.low, (double)side->shown.high});
+}
+
+bool compare_take(compare_state *state) {
+    bool any = false;
+    for (int i = 0; i < COMPARE_SIDES; i++) {
+        compare_side *side = &state->sides[i];
+        if (!frame_reader_poll(side->reader)) continue;
+        any = true;
+        const frame_page *page = compare_page(side);
+        side->has_frame = false;
+        if (page) take_page(state, side, page);
+    }
+    if (any && settle_frame(state)) state->stale = true;
+    if (any) follow(state);
+    return any;
 }

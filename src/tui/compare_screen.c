@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { CACHE_BYTES = 96 << 20 };
 static const double play_time = 0.1; /* s a frame */
 
 compare_state *compare_state_of(tui_app *app) {
@@ -19,29 +20,32 @@ compare_state *compare_state_of(tui_app *app) {
 
 /* ---- which runs -------------------------------------------------------------------------------------------------- */
 
-typedef struct completion {
-    const char *text;
-    char *out;
-    int index;
-} completion;
-
 static status take_id(void *context, const ledger_cell *cells, int count, report *r) {
-    completion *c = context;
+    compare_state *state = context;
     (void)count, (void)r;
-    const char *id = cells[0].text;
-    if (c->index >= 0 && id && strncmp(id, c->text, strlen(c->text)) == 0 && c->index-- == 0) snprintf(c->out, ACTION_ARGUMENT, "%s", id);
+    if (state->run_count < COMPARE_RUNS && cells[0].text) snprintf(state->runs[state->run_count++], LEDGER_ID, "%s", cells[0].text);
     return STATUS_OK;
 }
 
-static bool complete_run(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
-    completion c = {.text = text, .out = out, .index = index};
+static void find_runs(tui_app *app, compare_state *state) {
     report unused;
-    ledger *l;
-    out[0] = '\0';
+    ledger *l = NULL;
+    state->run_count = 0;
     if (app_open_ledger(app, &l, &unused) == STATUS_OK)
-        (void)ledger_each_row(l, "SELECT id FROM runs ORDER BY started DESC LIMIT 100", NULL, 0, take_id, &c, &unused);
+        (void)ledger_each_row(l, "SELECT id FROM runs ORDER BY started DESC LIMIT 100", NULL, 0, take_id, state, &unused);
     if (l) ledger_close(l);
-    return out[0] != '\0';
+}
+
+/* All candidates are asked for, one after the other: the ledger is read at the first. */
+static bool complete_run(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
+    compare_state *state = compare_state_of(app);
+    if (index == 0) find_runs(app, state);
+    for (int i = 0; i < state->run_count; i++) {
+        if (strncmp(state->runs[i], text, strlen(text)) != 0 || index-- > 0) continue;
+        snprintf(out, ACTION_ARGUMENT, "%s", state->runs[i]);
+        return true;
+    }
+    return false;
 }
 
 static status choose(tui_app *app, int side, const char *run, report *r) {
@@ -84,12 +88,12 @@ static status swap(tui_app *app, const char *argument, report *r) {
 static status show_frame(tui_app *app, int64_t frame, report *r) {
     compare_state *state = compare_state_of(app);
     int64_t first, last;
-    if (!compare_range(state, &first, &last)) return report_set(r, STATUS_INPUT, "There are no frames; A and B choose runs.");
-    frame = frame < first ? first : frame > last ? last : frame;
+    if (!state->sides[0].id[0] && !state->sides[1].id[0]) return report_set(r, STATUS_INPUT, "There are no frames; A and B choose runs.");
+    if (compare_range(state, &first, &last)) frame = frame < first ? first : frame > last ? last : frame;
     state->follows = false;
-    state->frame = frame;
+    state->frame = frame < 0 ? 0 : frame;
     state->stale = true;
-    app_log_argument(app, "%" PRId64, frame);
+    app_log_argument(app, "%" PRId64, state->frame);
     return STATUS_OK;
 }
 
@@ -186,15 +190,20 @@ static status change_mode(tui_app *app, const char *argument, report *r) {
     return STATUS_OK;
 }
 
-static const frame_player *any_player(const compare_state *state) {
-    return state->sides[0].player ? state->sides[0].player : state->sides[1].player;
+/* A run whose quantities are known; NULL while there is none. */
+static const frame_page *any_page(const compare_state *state) {
+    for (int i = 0; i < COMPARE_SIDES; i++) {
+        const frame_page *page = compare_page(&state->sides[i]);
+        if (page && page->field_count > 0) return page;
+    }
+    return NULL;
 }
 
 static bool complete_colour(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
-    const frame_player *p = any_player(compare_state_of(app));
-    for (int i = 0; p && frame_player_field(p, i); i++) {
-        if (strncmp(frame_player_field(p, i), text, strlen(text)) != 0 || index-- > 0) continue;
-        snprintf(out, ACTION_ARGUMENT, "%s", frame_player_field(p, i));
+    const frame_page *page = any_page(compare_state_of(app));
+    for (int i = 0; page && i < page->field_count; i++) {
+        if (strncmp(page->fields[i], text, strlen(text)) != 0 || index-- > 0) continue;
+        snprintf(out, ACTION_ARGUMENT, "%s", page->fields[i]);
         return true;
     }
     return false;
@@ -202,15 +211,14 @@ static bool complete_colour(tui_app *app, const char *text, int index, char out[
 
 static status change_colour(tui_app *app, const char *argument, report *r) {
     compare_state *state = compare_state_of(app);
-    const frame_player *p = any_player(state);
-    if (!p) return report_set(r, STATUS_INPUT, "There are no frames; A and B choose runs.");
-    int count = 0, at = -1;
-    for (; frame_player_field(p, count); count++) {
-        if (strcmp(frame_player_field(p, count), argument[0] ? argument : state->colour) == 0) at = count;
-    }
-    if (count == 0 || (argument[0] && at < 0))
-        return report_input(r, NULL, 0, "colour", "a quantity of these runs", argument, count ? frame_player_field(p, 0) : NULL);
-    snprintf(state->colour, sizeof state->colour, "%.31s", frame_player_field(p, argument[0] ? at : (at + 1) % count));
+    const frame_page *page = any_page(state);
+    if (!page && !argument[0]) return report_set(r, STATUS_INPUT, "There are no frames yet; A and B choose runs.");
+    if (page && argument[0] && !frame_page_has(page, argument))
+        return report_input(r, NULL, 0, "colour", "a quantity of these runs", argument, page->fields[0]);
+    int next = 0;
+    for (int i = 0; page && i < page->field_count; i++)
+        if (strcmp(page->fields[i], state->colour) == 0) next = (i + 1) % page->field_count;
+    snprintf(state->colour, sizeof state->colour, "%.31s", argument[0] || !page ? argument : page->fields[next]);
     state->scale = (view_scale){0, 0};
     state->stale = true;
     app_log_argument(app, "%s", state->colour);
@@ -259,25 +267,36 @@ static const tui_action actions[] = {
 
 /* ---- the screen -------------------------------------------------------------------------------------------------- */
 
-static status open_compare(tui_app *app, void **own, report *r) {
-    compare_state *state = *own = memory_allocate(sizeof *state);
-    if (!state) return report_set(r, STATUS_SYSTEM, "out of memory for the Compare screen");
-    const char *term = getenv("TERM");
-    view_mode finest = term && strcmp(term, "linux") == 0 ? VIEW_HALF : VIEW_BRAILLE;
-    view_mode mode = app->theme.ascii ? VIEW_ASCII : app->options.mode == TUI_AUTO ? finest : (view_mode)app->options.mode;
-    for (int i = 0; i < COMPARE_SIDES; i++) particle_view_open(&state->sides[i].view, mode);
-    state->follows = true;
-    return STATUS_OK;
+static void wake(void *context) {
+    app_wake(context);
 }
 
 static void close_compare(tui_app *app, void *own) {
     compare_state *state = own;
     (void)app;
     for (int i = 0; i < COMPARE_SIDES; i++) {
-        if (state->sides[i].player) frame_player_close(state->sides[i].player);
+        frame_reader_close(state->sides[i].reader);
         particle_view_close(&state->sides[i].view);
     }
     memory_free(state, sizeof *state);
+}
+
+static status open_compare(tui_app *app, void **own, report *r) {
+    compare_state *state = *own = memory_allocate(sizeof *state);
+    if (!state) return report_set(r, STATUS_SYSTEM, "out of memory for the Compare screen");
+    const char *term = getenv("TERM");
+    view_mode finest = term && strcmp(term, "linux") == 0 ? VIEW_HALF : VIEW_BRAILLE;
+    view_mode mode = app->theme.ascii ? VIEW_ASCII : app->options.mode == TUI_AUTO ? finest : (view_mode)app->options.mode;
+    status s = STATUS_OK;
+    for (int i = 0; i < COMPARE_SIDES; i++) {
+        particle_view_open(&state->sides[i].view, mode);
+        if (s == STATUS_OK) s = frame_reader_open(CACHE_BYTES, wake, app, &state->sides[i].reader, r);
+    }
+    state->follows = true;
+    if (s == STATUS_OK) return s;
+    close_compare(app, state);
+    *own = NULL;
+    return s;
 }
 
 /* When nothing was chosen: the run in view, and beside it what it is a branch of. */
@@ -290,32 +309,32 @@ static void enter_compare(tui_app *app, void *own) {
     (void)compare_choose(app, state, 0, app->shot->parent[0] ? app->shot->parent : app->shot->run_id, &unused);
 }
 
-/* The run in view has a new frame: a side that shows it knows of it. */
+/* The run in view has a new frame: a side that shows it looks for it. */
 static void follow_compare(tui_app *app, void *own, bool fresh) {
     compare_state *state = own;
-    report r;
     (void)fresh;
     for (int i = 0; i < COMPARE_SIDES; i++) {
         compare_side *side = &state->sides[i];
-        if (!app->run || strcmp(side->id, app->shot->run_id) != 0) continue;
-        if (!side->player && frame_player_open(side->folder, 0, &side->player, &r) != STATUS_OK) side->player = NULL;
-        if (side->player && frame_player_refresh(side->player, &r) == STATUS_OK && (state->follows || !side->has_frame)) state->stale = true;
+        if (app->run && strcmp(side->id, app->shot->run_id) == 0) side->grown = state->stale = true;
     }
+}
+
+static bool is_reading(compare_state *state) {
+    return frame_reader_busy(state->sides[0].reader) || frame_reader_busy(state->sides[1].reader);
 }
 
 static void tick_compare(tui_app *app, void *own, double now) {
     compare_state *state = own;
     int64_t first, last;
     if (app->screen != &screen_compare) return;
-    if (state->plays && now >= state->next && compare_range(state, &first, &last)) {
+    if (compare_take(state)) app->dirty = true;
+    if (state->plays && now >= state->next && !is_reading(state) && compare_range(state, &first, &last)) {
         state->next = now + play_time;
         if (state->frame >= last) state->plays = false;
         else state->frame++, state->stale = true;
         app->dirty = true;
     }
-    if (!state->stale) return;
-    compare_read(state);
-    app->dirty = true;
+    compare_ask(state);
 }
 
 const tui_screen screen_compare = {

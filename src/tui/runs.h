@@ -2,10 +2,10 @@
 #ifndef SUNDER_TUI_RUNS_H
 #define SUNDER_TUI_RUNS_H
 
-#include "session/player.h"
 #include "store/run_curves.h"
 #include "store/run_table.h"
 #include "tui/app.h"
+#include "tui/frame_reader.h"
 #include "tui/particle_view.h"
 #include "view/chart.h"
 
@@ -53,11 +53,11 @@ typedef struct runs_state {
     run_curve curves[RUNS_MARKS];
     int curve_count;
 
-    frame_player *player;
+    frame_reader *reader; /* NULL before frames are looked at for the first time */
+    char frames_of[READER_PATH]; /* the folder whose frames are shown; "" none */
+    int64_t frame;               /* the one that was asked for */
+    char field[READER_NAME];     /* the quantity that was; "" the run's usual one */
     particle_view view;
-    frame_view frame; /* what is shown: arrays are the player's */
-    int frame_index;
-    char field[RUNS_NAME];
     bool playing;
     double next_frame; /* s of app_clock, while playing */
 
@@ -88,8 +88,9 @@ status runs_read_detail(runs_state *s, bool only_differences, report *r);
 void runs_draw_plot(tui_app *app, runs_state *s, tui_area area);
 status runs_read_curves(runs_state *s, report *r);
 void runs_draw_player(tui_app *app, runs_state *s, tui_area area);
-status runs_show_frame(tui_app *app, runs_state *s, int index, report *r);
-void runs_close_player(runs_state *s);
+/* Asks for the frame of a number (the last one at or before it), or for the one so many further on; it is shown when it has been read. */
+status runs_show_frame(tui_app *app, runs_state *s, int64_t frame, report *r);
+status runs_show_further(tui_app *app, runs_state *s, int by, report *r);
 void runs_tick_player(tui_app *app, runs_state *s, double now);
 /* When the reproduction has ended: whether its bits are the same. */
 void runs_tick_reproduction(tui_app *app, runs_state *s);
@@ -104,6 +105,7 @@ RUNS_HANDLER(runs_page_down)
 RUNS_HANDLER(runs_home)
 RUNS_HANDLER(runs_end)
 RUNS_HANDLER(runs_left)
+RUNS_HANDLER(runs_choose)
 RUNS_HANDLER(runs_right)
 RUNS_HANDLER(runs_filter)
 RUNS_HANDLER(runs_show_all)

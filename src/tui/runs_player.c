@@ -1,6 +1,8 @@
 /* A past run's frames, one after the other. */
 #include "tui/runs.h"
 
+#include "base/names.h"
+#include "store/frames.h"
 #include "tui/timeline.h"
 
 #include <stdio.h>
@@ -11,85 +13,129 @@ static const double frame_time = 1. / 24; /* s between two frames that are playe
 
 /* ---- the player -------------------------------------------------------------------------------------------------- */
 
-void runs_close_player(runs_state *s) {
-    frame_player_close(s->player);
-    s->player = NULL;
-    s->frame = (frame_view){0};
-    s->playing = false;
+/* What has been read of the run whose frames are shown; NULL while there is nothing. */
+static const frame_page *page_of(const runs_state *s) {
+    const frame_page *page = s->reader ? frame_reader_page(s->reader) : NULL;
+    return page && strcmp(page->folder, s->frames_of) == 0 ? page : NULL;
 }
 
-static particle_points points_of(const runs_state *s) {
-    return (particle_points){.position = s->frame.position, .scalar = s->frame.value, .count = s->frame.count, .name = s->field, .unit = "",
-                             .natural = {(double)s->frame.low, (double)s->frame.high}};
+static status need_frames(const runs_state *s, report *r) {
+    return s->page == RUNS_PLAYER ? STATUS_OK : report_set(r, STATUS_INPUT, "Open a run's frames with enter first.");
 }
 
-status runs_show_frame(tui_app *app, runs_state *s, int index, report *r) {
-    float low[3], high[3];
-    if (!s->player) return report_set(r, STATUS_INPUT, "Open a run's frames with enter first.");
-    int last = frame_player_count(s->player) - 1;
-    index = index < 0 ? 0 : index > last ? last : index;
-    frame_view fresh;
-    status code = frame_player_bounds(s->player, low, high, r);
-    if (code == STATUS_OK) code = frame_player_read(s->player, frame_player_number(s->player, index), s->field[0] ? s->field : NULL, &fresh, r);
-    /* The player's last arrays hold no more, whether this went well or not. */
-    s->frame = code == STATUS_OK ? fresh : (frame_view){0};
-    s->view.old = true;
+static particle_points points_of(const frame_page *page) {
+    return (particle_points){.position = page->view.position, .scalar = page->view.value, .count = page->view.count, .name = page->field, .unit = "",
+                             .natural = {(double)page->view.low, (double)page->view.high}};
+}
+
+static void ask(tui_app *app, runs_state *s) {
+    frame_reader_ask(s->reader, s->frames_of, s->frame, s->field, false);
     app->dirty = true;
+}
+
+status runs_show_frame(tui_app *app, runs_state *s, int64_t frame, report *r) {
+    status code = need_frames(s, r);
     if (code != STATUS_OK) return code;
-    s->frame_index = index;
-    particle_points points = points_of(s);
-    particle_view_follow(&s->view, &points, low, high);
+    s->frame = frame < 0 ? 0 : frame;
+    ask(app, s);
     return STATUS_OK;
+}
+
+/* Beyond the last one there may be more by now: a run that goes on. */
+status runs_show_further(tui_app *app, runs_state *s, int by, report *r) {
+    const frame_page *page = page_of(s);
+    status code = need_frames(s, r);
+    if (code != STATUS_OK || !page || page->frame_count == 0) return code;
+    int index = frame_page_index(page, s->frame) + by, last = page->frame_count - 1;
+    return runs_show_frame(app, s, index > last ? page->frames[last] + 1 : page->frames[index < 0 ? 0 : index], r);
+}
+
+static void wake(void *context) {
+    app_wake(context);
 }
 
 status runs_open(tui_app *app, const char *argument, report *r) {
     runs_state *s = runs_state_of(app);
-    char id[LEDGER_ID], folder[1024];
-    frame_player *player;
+    char id[LEDGER_ID], folder[READER_PATH];
     status code = runs_named(app, s, argument, id, folder, r);
-    if (code == STATUS_OK) code = frame_player_open(folder, 0, &player, r);
+    if (code == STATUS_OK && frame_last(folder) < 0)
+        code = report_input(r, folder, 0, NULL, "a run's folder with frames in it", "none", NULL);
+    if (code == STATUS_OK && !s->reader) code = frame_reader_open(0, wake, app, &s->reader, r);
     if (code != STATUS_OK) return code;
-    runs_close_player(s);
-    s->player = player;
+    memcpy(s->frames_of, folder, sizeof folder);
     snprintf(s->shown[0], LEDGER_ID, "%s", id);
     s->shown_count = 1;
-    const char *field = frame_player_default_field(player);
-    snprintf(s->field, sizeof s->field, "%s", field ? field : "");
+    s->field[0] = '\0';
+    s->playing = false;
+    s->page = RUNS_PLAYER;
     particle_view_forget(&s->view);
-    code = runs_show_frame(app, s, 0, r);
-    s->page = code == STATUS_OK ? RUNS_PLAYER : RUNS_TABLE;
-    if (code != STATUS_OK) runs_close_player(s);
     app_log_argument(app, "%s", id);
-    return code;
+    return runs_show_frame(app, s, 0, r);
 }
 
 status runs_frame(tui_app *app, const char *argument, report *r) {
     runs_state *s = runs_state_of(app);
-    if (!s->player) return report_set(r, STATUS_INPUT, "Open a run's frames with enter first.");
     s->playing = false;
-    return runs_show_frame(app, s, frame_player_index(s->player, atoll(argument)), r);
+    return runs_show_frame(app, s, atoll(argument), r);
+}
+
+/* A quantity that the run does not have. */
+static status refuse_field(const frame_page *page, const char *field, report *r) {
+    const char *names[READER_FIELDS];
+    for (int i = 0; i < page->field_count; i++) names[i] = page->fields[i];
+    return report_input(r, page->folder, 0, "field", "a quantity of this run's particles", field, name_nearest(field, names, page->field_count));
 }
 
 status runs_colour(tui_app *app, const char *argument, report *r) {
     runs_state *s = runs_state_of(app);
-    char before[RUNS_NAME];
-    if (!s->player) return report_set(r, STATUS_INPUT, "Open a run's frames with enter first.");
-    memcpy(before, s->field, sizeof before);
-    int next = 0;
-    for (int i = 0; frame_player_field(s->player, i); i++)
-        if (strcmp(frame_player_field(s->player, i), s->field) == 0) next = i + 1;
-    const char *field = argument[0] ? argument : frame_player_field(s->player, next);
-    if (!field) field = frame_player_field(s->player, 0);
-    snprintf(s->field, sizeof s->field, "%s", field ? field : "");
-    status code = runs_show_frame(app, s, s->frame_index, r);
-    report unused;
-    if (code != STATUS_OK) {
-        memcpy(s->field, before, sizeof before);
-        (void)runs_show_frame(app, s, s->frame_index, &unused);
-        return code;
+    const frame_page *page = page_of(s);
+    status code = need_frames(s, r);
+    if (code != STATUS_OK) return code;
+    if (argument[0] && page && !frame_page_has(page, argument)) return refuse_field(page, argument, r);
+    if (argument[0]) snprintf(s->field, sizeof s->field, "%.31s", argument);
+    else if (page && page->field_count > 0) {
+        int next = 0;
+        for (int i = 0; i < page->field_count; i++)
+            if (strcmp(page->fields[i], s->field) == 0) next = i + 1;
+        memcpy(s->field, page->fields[next < page->field_count ? next : 0], sizeof s->field);
     }
     app_log_argument(app, "%s", s->field);
+    ask(app, s);
     return STATUS_OK;
+}
+
+/* A page has come: what was asked for is now known to be there, or not. */
+static void take_page(tui_app *app, runs_state *s, const frame_page *page) {
+    report r;
+    app->dirty = true;
+    if (!page->has_frame) {
+        app_notice(app, "%s", page->problem);
+        s->playing = false;
+        return;
+    }
+    if (s->field[0] && strcmp(s->field, page->field) != 0 && !frame_page_has(page, s->field)) {
+        (void)refuse_field(page, s->field, &r);
+        app_fail(app, &r);
+        s->field[0] = '\0';
+        ask(app, s);
+        return;
+    }
+    if (!s->field[0]) memcpy(s->field, page->field, sizeof s->field);
+    if (page->asked == s->frame && page->view.frame < s->frame) {
+        s->frame = page->view.frame;
+        s->playing = false; /* there are no more */
+    }
+    particle_points points = points_of(page);
+    particle_view_follow(&s->view, &points, page->low, page->high);
+}
+
+void runs_tick_player(tui_app *app, runs_state *s, double now) {
+    report unused;
+    if (s->page != RUNS_PLAYER || !s->reader) return;
+    if (frame_reader_poll(s->reader) && page_of(s)) take_page(app, s, page_of(s));
+    if (!s->playing || now < s->next_frame || frame_reader_busy(s->reader)) return;
+    s->next_frame = now + frame_time;
+    (void)runs_show_further(app, s, 1, &unused);
 }
 
 status runs_beside(tui_app *app, const char *argument, report *r) {
@@ -99,19 +145,6 @@ status runs_beside(tui_app *app, const char *argument, report *r) {
     app_show(app, &screen_compare);
     status code = app_do(app, "compare.left", s->marks[0], r);
     return code == STATUS_OK ? app_do(app, "compare.right", s->marks[1], r) : code;
-}
-
-void runs_tick_player(tui_app *app, runs_state *s, double now) {
-    report r;
-    if (s->page != RUNS_PLAYER || !s->playing || now < s->next_frame) return;
-    s->next_frame = now + frame_time;
-    if (s->frame_index + 1 >= frame_player_count(s->player)) (void)frame_player_refresh(s->player, &r); /* a run that goes on */
-    if (s->frame_index + 1 >= frame_player_count(s->player)) s->playing = false;
-    else if (runs_show_frame(app, s, s->frame_index + 1, &r) != STATUS_OK) {
-        s->playing = false;
-        app_fail(app, &r);
-    }
-    app->dirty = true;
 }
 
 /* ---- the camera -------------------------------------------------------------------------------------------------- */
@@ -139,12 +172,20 @@ RUNS_LOOK(reset, "reset")
 /* ---- drawing ----------------------------------------------------------------------------------------------------- */
 
 void runs_draw_player(tui_app *app, runs_state *s, tui_area area) {
-    particle_points points = points_of(s);
-    int last = frame_player_count(s->player) - 1;
+    const frame_page *page = page_of(s);
     int column = draw_text(&app->theme, area, 0, 0, STYLE_STRONG, s->shown[0]);
-    draw_format(&app->theme, area, 0, column, STYLE_DIM, "  frame %lld of %lld   t = %.4g   %s%s", (long long)s->frame.frame, (long long)frame_player_number(s->player, last),
-                s->frame.time, s->field, s->playing ? "   playing" : "");
-    timeline line = {.first = frame_player_number(s->player, 0), .last = frame_player_number(s->player, last), .now = s->frame.frame, .chosen = -1};
+    if (!page || !page->has_frame) {
+        bool wrong = page && page->problem[0];
+        draw_paragraph(&app->theme, (tui_area){area.y + 1, area.x + 1, area.height - 1, area.width - 2}, area.height / 2 - 1, 3, wrong ? STYLE_BAD : STYLE_DIM,
+                       wrong ? page->problem : "reading its frames …");
+        return;
+    }
+    int64_t last = page->frames[page->frame_count - 1];
+    const char *doing = s->frame != page->view.frame && frame_reader_busy(s->reader) ? "   reading" : s->playing ? "   playing" : "";
+    draw_format(&app->theme, area, 0, column, STYLE_DIM, "  frame %lld of %lld   t = %.4g   %s%s", (long long)page->view.frame, (long long)last, page->view.time,
+                page->field, doing);
+    timeline line = {.first = page->frames[0], .last = last, .now = page->view.frame, .chosen = -1};
     timeline_draw(&line, &app->theme, area, area.height - 1);
-    if (points.position) particle_view_draw(&s->view, &app->theme, (tui_area){area.y + 1, area.x, area.height - 2, area.width}, &points);
+    particle_points points = points_of(page);
+    particle_view_draw(&s->view, &app->theme, (tui_area){area.y + 1, area.x, area.height - 2, area.width}, &points);
 }

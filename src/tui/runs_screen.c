@@ -172,14 +172,14 @@ status runs_home(tui_app *app, const char *argument, report *r) {
 status runs_end(tui_app *app, const char *argument, report *r) {
     runs_state *s = runs_state_of(app);
     (void)argument;
-    if (s->page == RUNS_PLAYER) return runs_show_frame(app, s, frame_player_count(s->player) - 1, r);
+    if (s->page == RUNS_PLAYER) return runs_show_frame(app, s, INT64_MAX, r);
     move_cursor(app, 1000000000);
     return STATUS_OK;
 }
 
 static status sideways(tui_app *app, int by, report *r) {
     runs_state *s = runs_state_of(app);
-    if (s->page == RUNS_PLAYER) return runs_show_frame(app, s, s->frame_index + by, r);
+    if (s->page == RUNS_PLAYER) return runs_show_further(app, s, by, r);
     s->column += by;
     if (s->column >= s->column_count) s->column = s->column_count - 1;
     if (s->column < 0) s->column = 0;
@@ -200,7 +200,6 @@ status runs_right(tui_app *app, const char *argument, report *r) {
 status runs_back(tui_app *app, const char *argument, report *r) {
     runs_state *s = runs_state_of(app);
     (void)argument, (void)r;
-    if (s->page == RUNS_PLAYER) runs_close_player(s);
     s->page = RUNS_TABLE;
     s->playing = false;
     app->dirty = true;
@@ -441,7 +440,7 @@ static status open_runs(tui_app *app, void **state, report *r) {
 static void close_runs(tui_app *app, void *state) {
     runs_state *s = state;
     (void)app;
-    runs_close_player(s);
+    frame_reader_close(s->reader);
     particle_view_close(&s->view);
     for (int i = 0; i < RUNS_MARKS; i++) run_curve_free(&s->curves[i]);
     run_table_free(s->table);

@@ -108,6 +108,16 @@ bool library_find_scene(const char *name, char path[LIBRARY_PATH]) {
     return found;
 }
 
+void library_name_scene(const char *path, char name[LIBRARY_PATH]) {
+    char found[LIBRARY_PATH];
+    const char *file = strrchr(path, '/'), *group = file;
+    snprintf(name, LIBRARY_PATH, "%s", path);
+    while (group && group > path && group[-1] != '/') group--;
+    /* In the working folder that name may be another file's, or this one's already. */
+    if (!group || group == path || access(group, F_OK) == 0) return;
+    if (library_find_scene(group, found) && same_file(found, path)) snprintf(name, LIBRARY_PATH, "%s", group);
+}
+
 /* ---- recipes ----------------------------------------------------------------------------------------------------- */
 
 static int add_recipes(const char *folder, char (*out)[LIBRARY_NAME], int count, int limit) {

@@ -23,6 +23,10 @@ int library_scenes(library_scene *out, int limit);
  * or whose name it is ("tube_pull"). False: as given, and there is none. */
 bool library_find_scene(const char *name, char path[LIBRARY_PATH]);
 
+/* The shortest name by which library_find_scene finds this file ("solid/tube_pull.lua"), so that it can be found from another folder or
+ * clone too; as given when it is not a scene at hand. */
+void library_name_scene(const char *path, char name[LIBRARY_PATH]);
+
 /* Names of the recipes that a scene can ask for, sorted, each once. */
 int library_recipes(const char *scene_path, char (*out)[LIBRARY_NAME], int limit);
 

@@ -181,11 +181,13 @@ static status next_screen(tui_app *app, const char *argument, report *r) {
 
 static status start_run(tui_app *app, const char *argument, report *r) {
     static start_words words; /* large; used within this call only */
-    char text[START_TEXT];
+    char text[START_TEXT], name[LIBRARY_PATH];
     status s = start_parse(argument, &words, r);
     if (s != STATUS_OK) return s;
-    if (start_print(&words.options, text)) app_log_argument(app, "%s", text);
     s = app_start_run(app, &words.options, r);
+    library_name_scene(words.options.scene_path, name);
+    words.options.scene_path = name;
+    if (start_print(&words.options, text)) app_log_argument(app, "%s", text);
     if (s == STATUS_OK) app_show(app, &screen_run);
     return s;
 }
@@ -332,12 +334,51 @@ static status check_argument(const action_place *place, const char *argument, re
     return STATUS_OK;
 }
 
+/* A run of this session is "@2" in the log, by their order: a replay's runs have other ids. */
+static const char *say_run(const tui_app *app, const char *id, char out[16]) {
+    for (int i = 0; i < app->shell->run_count; i++) {
+        if (strcmp(app->shell->runs[i], id) != 0) continue;
+        snprintf(out, 16, "@%d", i + 1);
+        return out;
+    }
+    return id;
+}
+
+static const char *find_run(const tui_app *app, const char *name) {
+    int number = name[0] == '@' ? atoi(name + 1) : 0;
+    return number >= 1 && number <= app->shell->run_count ? app->shell->runs[number - 1] : name;
+}
+
+static bool takes_run(const tui_action *action) {
+    return action->asks && strcmp(action->asks, "RUN") == 0;
+}
+
+/* Where the cursor is before an action that depends on it. */
+static void look_at_cursor(tui_app *app, const action_place *place, const char *argument) {
+    char *cursor = app->shell->cursor, action[ACTION_ARGUMENT];
+    report unused;
+    cursor[0] = '\0';
+    if (!place->action->here || (takes_run(place->action) && argument[0])) return;
+    if (!place->screen->cursor || !place->screen->cursor(app, screen_state(app, place->screen, &unused), action, sizeof action)) return;
+    snprintf(cursor, sizeof app->shell->cursor, "%s.%s", place->screen->name, action);
+}
+
+static void note_cursor(tui_app *app) {
+    char *cursor = app->shell->cursor, *space = strchr(cursor, ' '), said[16];
+    if (!cursor[0] || !space) return;
+    *space = '\0';
+    log_line(app, log_frame_now(app), cursor, say_run(app, space + 1, said));
+}
+
 static void note(tui_app *app, const action_place *place, const char *argument) {
     tui_shell *shell = app->shell;
     if (place->action->unlogged || shell->log_nothing) return;
     char name[SHELL_NAME];
     action_name(place, name, sizeof name);
+    note_cursor(app);
+    char said[16];
     const char *text = shell->log_argument_given ? shell->log_argument : argument;
+    if (takes_run(place->action)) text = say_run(app, text, said);
     if (shell->log_deferred) {
         log_pend(app, name, text);
     } else {
@@ -358,6 +399,8 @@ static status do_place(tui_app *app, const action_place *place, const char *argu
         (void)screen_state(app, place->screen, r);
         s = r->code;
     }
+    if (takes_run(place->action)) argument = find_run(app, argument);
+    if (s == STATUS_OK && outermost) look_at_cursor(app, place, argument);
     if (s == STATUS_OK) s = place->action->handler(app, argument, r);
     if (s == STATUS_OK && outermost) note(app, place, argument);
     shell->depth -= deeper;

@@ -94,6 +94,8 @@ void log_attach(tui_app *app) {
     command_log *log = &app->shell->log;
     if (log->attached || !app->shot->output[0]) return;
     log->attached = true;
+    tui_shell *shell = app->shell;
+    if (shell->run_count < SHELL_RUNS) snprintf(shell->runs[shell->run_count++], sizeof shell->runs[0], "%s", app->shot->run_id);
     if (access(app->shot->output, F_OK) != 0) return; /* nothing is kept of this run */
     char path[TUI_PATH];
     report r;

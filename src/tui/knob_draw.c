@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { DETAIL_ROWS = 6, WIDE = 64, NAME_NARROW = 15, NAME_WIDE = 20, VALUE = 11 };
+enum { DETAIL_ROWS = 6, WIDE = 64, NAME_NARROW = 15, NAME_WIDE = 20, TWIN_NAME = 14, VALUE = 11 };
 
 static bool changed(const knob *k) {
     return memcmp(k->value, k->start, sizeof k->value) != 0;
@@ -40,23 +40,36 @@ static void draw_side(tui_theme *theme, tui_area area, int row, int name_width, 
     draw_right(theme, area, row, name_width + 1 + VALUE, number, value);
 }
 
+/* The values of twins on a narrow row: whole where they fit beside a few letters of the second name; else the one that is not being turned is
+ * rounded. */
+static void show_twins(const knob *const sides[2], int chosen, int width, char values[2][KNOB_TEXT]) {
+    enum { FRAME = 7, LETTERS = 6 };
+    int names = (int)strlen(sides[0]->key), second = (int)strlen(sides[1]->key);
+    names = (names < TWIN_NAME ? names : TWIN_NAME) + (second < LETTERS ? second : LETTERS);
+    for (int i = 0; i < 2; i++) knob_show(sides[i], sides[i]->value, values[i]);
+    for (int k = 0; k < 2 && FRAME + names + draw_width(values[0]) + draw_width(values[1]) > width; k++) {
+        int side = chosen == 0 ? 1 - k : k;
+        if (k == 1 && chosen >= 0) return;
+        snprintf(values[side], KNOB_TEXT, "%.3g", sides[side]->value[0]);
+    }
+}
+
 /* "sigma_c 3.196e+04 = break_stretch 0.2" where two columns of each do not fit; the second name gives way. */
 static void draw_twins(tui_theme *theme, tui_area area, int row, const knob *k, const knob *twin, int chosen) {
     const knob *sides[2] = {k, twin};
-    char value[KNOB_TEXT], name[64];
-    snprintf(value, sizeof value, "%.3g", twin->value[0]);
-    int end = area.width - draw_width(value) - 1, column = 1;
+    char values[2][KNOB_TEXT], name[64];
+    show_twins(sides, chosen, area.width, values);
+    int end = area.width - draw_width(values[1]) - 1, column = 1;
     for (int i = 0; i < 2; i++) {
         tui_style style = i == chosen ? STYLE_HEAD : sides[i]->derived || !sides[i]->live ? STYLE_DIM : STYLE_TEXT;
         if (i == chosen) draw_text(theme, area, row, column - 1, STYLE_HEAD, "▸");
-        snprintf(name, sizeof name, "%.*s", i == 0 ? 14 : end > column ? end - column : 0, sides[i]->key);
+        snprintf(name, sizeof name, "%.*s", i == 0 ? TWIN_NAME : end > column ? end - column : 0, sides[i]->key);
         column = draw_text(theme, area, row, column, style, name) + 1;
-        snprintf(value, sizeof value, "%.3g", sides[i]->value[0]);
         tui_style number = changed(sides[i]) ? STYLE_WARN : sides[i]->derived ? STYLE_DIM : STYLE_STRONG;
         if (i == 1) {
-            draw_right(theme, area, row, area.width, number, value);
+            draw_right(theme, area, row, area.width, number, values[i]);
         } else {
-            column = draw_text(theme, area, row, column, number, value) + 1;
+            column = draw_text(theme, area, row, column, number, values[i]) + 1;
             column = draw_text(theme, area, row, column, STYLE_DIM, "=") + 1;
         }
     }

@@ -206,6 +206,32 @@ status runs_back(tui_app *app, const char *argument, report *r) {
     return STATUS_OK;
 }
 
+/* Puts the cursor on a run. */
+status runs_choose(tui_app *app, const char *argument, report *r) {
+    runs_state *s = runs_state_of(app);
+    char id[LEDGER_ID], folder[1024];
+    status code = runs_named(app, s, argument, id, folder, r);
+    if (code != STATUS_OK) return code;
+    if (!s->table || run_table_find(s->table, id) < 0) runs_reload(app, s, true); /* one that is newer than the table */
+    int row = s->table ? run_table_find(s->table, id) : -1, at = -1;
+    for (int i = 0; i < s->row_count; i++)
+        if (s->rows[i] == row) at = i;
+    if (row < 0 || at < 0) return report_set(r, STATUS_INPUT, "%s is not among the runs that are shown: A shows all.", id);
+    s->cursor = at;
+    app_log_argument(app, "%s", id);
+    app->dirty = true;
+    return STATUS_OK;
+}
+
+static bool cursor_of_runs(const tui_app *app, const void *state, char *action, size_t size) {
+    const runs_state *s = state;
+    const char *chosen = runs_chosen(s);
+    (void)app;
+    if (s->page != RUNS_TABLE || !chosen) return false;
+    snprintf(action, size, "choose %s", chosen);
+    return true;
+}
+
 /* ---- filter, order, columns, marks ------------------------------------------------------------------------------- */
 
 status runs_filter(tui_app *app, const char *argument, report *r) {
@@ -294,10 +320,11 @@ status runs_columns(tui_app *app, const char *argument, report *r) {
 
 status runs_drop_column(tui_app *app, const char *argument, report *r) {
     runs_state *s = runs_state_of(app);
-    (void)argument;
+    int at = argument[0] ? find_column(s, argument) : s->column;
+    if (at < 0) return report_input(r, NULL, 0, "drop-column", "a column that is shown", argument, s->columns[0]);
     if (s->column_count < 2) return report_set(r, STATUS_INPUT, "The last column stays.");
-    app_log_argument(app, "%s", s->columns[s->column]);
-    remove_column(s, s->column);
+    app_log_argument(app, "%s", s->columns[at]);
+    remove_column(s, at);
     app->dirty = true;
     return STATUS_OK;
 }
@@ -385,6 +412,7 @@ static const tui_action actions[] = {
     {"end", {KEY_END, '>'}, ">  End", NULL, "the last run; of frames, the last", .handler = runs_end, .unlogged = true},
     {"left", {KEY_LEFT}, "left", NULL, "the column before; of frames, the one before", .handler = runs_left, .unlogged = true},
     {"right", {KEY_RIGHT}, "right", NULL, "the next column; of frames, the next", .handler = runs_right, .unlogged = true},
+    {"choose", {0}, ":", NULL, "put the cursor on a run", .handler = runs_choose, .argument = ARGUMENT_TEXT, .asks = "RUN", .complete = runs_complete_run},
     {"open", {'\r', '\n', KEY_ENTER}, "enter", "frames", "look at the run's frames", .handler = runs_open, .argument = ARGUMENT_MAY, .asks = "RUN",
      .complete = runs_complete_run},
     {"mark", {' '}, "space", "mark", "mark the run, or not; of frames, play and halt", .handler = runs_mark, .argument = ARGUMENT_MAY, .asks = "RUN",
@@ -397,18 +425,18 @@ static const tui_action actions[] = {
      .complete = runs_complete_column},
     {"columns", {'c'}, "c", "columns", "add columns, or take them away, by name: parameters and measures too", .handler = runs_columns,
      .argument = ARGUMENT_TEXT, .asks = "NAME…", .complete = runs_complete_column},
-    {"drop-column", {'x'}, "x", NULL, "take this column away", .handler = runs_drop_column},
+    {"drop-column", {'x'}, "x", NULL, "take this column away", .handler = runs_drop_column, .argument = ARGUMENT_MAY, .asks = "COLUMN"},
     {"diff", {'d'}, "d", "differ", "what differs between the marked runs", .handler = runs_diff},
     {"beside", {'b'}, "b", NULL, "two marked runs beside each other, frame by frame", .handler = runs_beside},
-    {"detail", {'i'}, "i", "all", "all that is known of the run", .handler = runs_detail, .argument = ARGUMENT_MAY, .asks = "RUN", .complete = runs_complete_run},
-    {"plot", {'p'}, "p", "plot", "a measure of the marked runs over time", .handler = runs_plot, .argument = ARGUMENT_MAY, .asks = "MEASURE",
+    {"detail", {'i'}, "i", "all", "all that is known of the run", .handler = runs_detail, .here = true, .argument = ARGUMENT_MAY, .asks = "RUN", .complete = runs_complete_run},
+    {"plot", {'p'}, "p", "plot", "a measure of the marked runs over time", .handler = runs_plot, .here = true, .argument = ARGUMENT_MAY, .asks = "MEASURE",
      .complete = runs_complete_measure},
     {"measure", {'m'}, "m", NULL, "plot the next measure", .handler = runs_next_measure, .argument = ARGUMENT_MAY, .asks = "back"},
     {"against", {'v'}, "v", NULL, "plot against a parameter, over all runs that are shown; time for time", .handler = runs_against,
      .argument = ARGUMENT_TEXT, .asks = "PARAMETER", .complete = runs_complete_parameter},
     {"logarithmic", {'n'}, "n", NULL, "plot logarithmically, or not", .handler = runs_logarithmic},
-    {"tag", {'T'}, "T", "tag", "tag the marked runs, or this one; -TAG takes it away", .handler = runs_tag, .argument = ARGUMENT_TEXT, .asks = "[-]TAG"},
-    {"note", {'N'}, "N", NULL, "write a remark about the run", .handler = runs_note, .argument = ARGUMENT_TEXT, .asks = "TEXT"},
+    {"tag", {'T'}, "T", "tag", "tag the marked runs, or this one; -TAG takes it away", .handler = runs_tag, .here = true, .argument = ARGUMENT_TEXT, .asks = "[-]TAG"},
+    {"note", {'N'}, "N", NULL, "write a remark about the run", .handler = runs_note, .here = true, .argument = ARGUMENT_TEXT, .asks = "TEXT"},
     {"reproduce", {'R'}, "R", NULL, "run it again, and compare the bits", .handler = runs_reproduce, .argument = ARGUMENT_MAY, .asks = "RUN",
      .complete = runs_complete_run},
     {"delete", {'D', KEY_DC}, "D", NULL, "take the run and its frames away (asks first)", .handler = runs_delete, .unlogged = true},
@@ -483,6 +511,7 @@ const tui_screen screen_runs = {
     .close = close_runs,
     .enter = enter_runs,
     .tick = tick_runs,
+    .cursor = cursor_of_runs,
     .draw = runs_draw,
     .mouse = mouse_runs,
 };

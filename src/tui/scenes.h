@@ -24,6 +24,9 @@ typedef struct scenes_state {
     int setting_count;
     int precision; /* 32 or 64 */
 
+    char recipes[SCENES_RECIPES][LIBRARY_NAME]; /* that can be completed to */
+    int recipe_count;
+
     scene_preview *preview; /* NULL without a terminal */
     preview_facts facts;
     double ask_at; /* when to look at what is chosen, s of app_clock; 0: it has been */

@@ -195,11 +195,11 @@ static status recipe(tui_app *app, const char *argument, report *r) {
 
 static bool complete_recipe(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
     scenes_state *s = state_of(app);
-    char names[SCENES_RECIPES][LIBRARY_NAME];
     const library_scene *chosen = scenes_chosen(s);
-    int count = library_recipes(chosen ? chosen->path : ".", names, SCENES_RECIPES);
-    for (int i = -1; i < count; i++) {
-        const char *name = i < 0 ? "none" : names[i];
+    /* All candidates are asked for, one after the other: the folders are looked into at the first. */
+    if (index == 0) s->recipe_count = library_recipes(chosen ? chosen->path : ".", s->recipes, SCENES_RECIPES);
+    for (int i = -1; i < s->recipe_count; i++) {
+        const char *name = i < 0 ? "none" : s->recipes[i];
         if (strncmp(name, text, strlen(text)) != 0 || index-- > 0) continue;
         snprintf(out, ACTION_ARGUMENT, "%s", name);
         return true;

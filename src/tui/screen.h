@@ -39,6 +39,7 @@ typedef struct tui_action {
      * none. NULL: no completion. */
     bool (*complete)(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]);
     bool paces; /* it only says when the run goes on: a replay, which sees to that itself, leaves it out */
+    bool here;  /* without an argument it acts on the row under the screen's cursor, which the log then says first */
     bool unlogged; /* neither a run's bits nor what is seen later depends on it (moves within a list, say) */
 } tui_action;
 
@@ -63,6 +64,8 @@ typedef struct tui_screen {
     void (*follow)(tui_app *app, void *state, bool fresh);
     /* Draws into the area between the title and the message line: 40 columns and 7 rows at least. */
     void (*draw)(tui_app *app, void *state, tui_area area);
+    /* Where the cursor is, as an action ("choose RUN"): noted before an action that acts `here`. False: nowhere that matters. */
+    bool (*cursor)(const tui_app *app, const void *state, char *action, size_t size);
     /* A line for the message row when there is nothing more pressing; false: none. */
     bool (*message)(tui_app *app, void *state, char *text, size_t size, tui_style *style);
     /* Keys before they become actions, for typing into a field: true when the key was taken. */

@@ -10,7 +10,7 @@
 #include <stdatomic.h>
 #include <stdio.h>
 
-enum { SHELL_BINDINGS = USER_BINDINGS };
+enum { SHELL_BINDINGS = USER_BINDINGS, SHELL_RUNS = 256 };
 enum { PROMPT_HISTORY = 64, START_SETTINGS = 64, START_TURNS = 256, SHELL_NAME = 64 };
 
 /* ---- prompt.c ---------------------------------------------------------------------------------------------------- */
@@ -141,6 +141,9 @@ typedef struct tui_shell {
     bool log_nothing, log_argument_given, log_frame_given, log_deferred;
     char log_argument[ACTION_ARGUMENT];
     int64_t log_frame;
+    char cursor[SHELL_NAME + ACTION_ARGUMENT]; /* where it was before the action, as an action; "" when that does not matter */
+    int run_count;
+    char runs[SHELL_RUNS][40]; /* ids of this session's runs, in order */
     int depth; /* actions done by actions: only the outermost is logged */
 } tui_shell;
 

@@ -167,16 +167,9 @@ static status load(tui_app *app, sweep_state *s, report *r) {
     return start_child(app, s, true, NULL, r);
 }
 
-/* choose: the script under the cursor, or the one at hand whose path ends so. */
-static status choose(tui_app *app, const char *argument, report *r) {
+/* The script under the cursor, or the one at hand whose path ends so. */
+static status open_script(tui_app *app, const char *argument, report *r) {
     sweep_state *s = sweep_state_of(app);
-    if (s->loaded && !argument[0]) { /* of a grid: the run's frames */
-        int run = sweep_run_at(s, s->at[0], s->at[1]);
-        if (run < 0 || !s->cells[run].last.id[0]) return report_set(r, STATUS_INPUT, "There is no run here yet.");
-        app_log_nothing(app); /* which cell the cursor was in is not in the log */
-        app_show(app, &screen_runs);
-        return app_do(app, "runs.open", s->cells[run].last.id, r);
-    }
     if (s->going) return report_set(r, STATUS_INPUT, "A sweep is going on: S stops it.");
     size_t length = strlen(argument);
     bool found = length == 0;
@@ -192,6 +185,16 @@ static status choose(tui_app *app, const char *argument, report *r) {
     if (s->script_count == 0) return report_set(r, STATUS_INPUT, "There is no sweep at hand: Lua files in sweeps/ beside scenes.");
     app_log_argument(app, "%s", s->scripts[s->script]);
     return load(app, s, r);
+}
+
+/* What is under the cursor: a script, or of a grid a run's frames. The log has what that was. */
+static status choose(tui_app *app, const char *argument, report *r) {
+    sweep_state *s = sweep_state_of(app);
+    if (!s->loaded || argument[0]) return app_do(app, "sweep.open", argument, r);
+    int run = sweep_run_at(s, s->at[0], s->at[1]);
+    if (run < 0 || !s->cells[run].id[0]) return report_set(r, STATUS_INPUT, "There is no run here yet.");
+    app_show(app, &screen_runs);
+    return app_do(app, "runs.open", s->cells[run].id, r);
 }
 
 static status run_sweep(tui_app *app, const char *argument, report *r) {
@@ -333,7 +336,8 @@ static const tui_action actions[] = {
     {"left", {KEY_LEFT, 'h'}, "left", NULL, "the value to the left", .handler = go_left, .unlogged = true},
     {"right", {KEY_RIGHT, 'l'}, "right", NULL, "the value to the right", .handler = go_right, .unlogged = true},
     {"choose", {'\r', '\n', KEY_ENTER}, "enter", "open", "open the sweep; of a grid: the run's frames", .handler = choose, .argument = ARGUMENT_MAY, .asks = "FILE.lua",
-     .complete = complete_script},
+     .complete = complete_script, .unlogged = true},
+    {"open", {0}, ":", NULL, "open a sweep", .handler = open_script, .argument = ARGUMENT_MAY, .asks = "FILE.lua", .complete = complete_script},
     {"run", {'r'}, "r", "run", "make the runs that are missing, so many at a time", .handler = run_sweep, .argument = ARGUMENT_MAY, .asks = "jobs"},
     {"stop", {'S'}, "S", "stop", "stop it: what is done stays", .handler = stop_sweep},
     {"measure", {'m'}, "m", "measure", "show the next measure of the runs' last frames", .handler = choose_measure, .argument = ARGUMENT_MAY, .asks = "MEASURE"},

@@ -1,5 +1,6 @@
 /* The workbench's loop: signals, keys, the run's state, time, drawing. */
 #include "base/memory.h"
+#include "script/library.h"
 #include "tui/actions.h"
 #include "tui/capture.h"
 #include "tui/shell.h"
@@ -181,10 +182,12 @@ static void loop(tui_app *app) {
 static void log_start(tui_app *app, session *run) {
     knob_turn turns[START_TURNS_SAID];
     session_options asked;
-    char words[START_TEXT];
+    char words[START_TEXT], name[LIBRARY_PATH];
     session_request(run, &asked);
     asked.turn_count = session_turns(run, turns, START_TURNS_SAID);
     asked.turns = turns;
+    library_name_scene(asked.scene_path, name);
+    asked.scene_path = name;
     bool fits = asked.turn_count <= START_TURNS_SAID && start_print(&asked, words);
     log_line(app, -1, "start", fits ? words : "# more settings and turns than a line holds: not to be replayed");
 }

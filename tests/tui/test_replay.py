@@ -111,6 +111,38 @@ def a_diffusion_source_is_turned():
 
 
 @test
+def what_is_said_about_runs_is_said_of_the_same_ones():
+    """Remarks about the rows of the Runs screen, by its cursor and marks: a replay, whose runs have other names, makes them about its own."""
+    with Bench("solid/tube_pull.lua --set particles=900 --frames 2") as s:
+        s.wait(r"done *$")
+        s.do(f"start {bench.SCENES}/solid/tube_pull.lua --set particles=900 --set eta=0.3 --frames 2")
+        s.until("two runs", lambda: s.sql("SELECT status FROM runs") == [["done"], ["done"]])
+        s.do("screen runs")
+        s.wait(r"2 of 2 runs")
+        s.keys("Down")
+        s.do("runs.tag first")
+        s.wait(r"first on 1 run")
+        s.keys("Up", "Space")
+        s.wait(r"1 marked")
+        s.do("runs.tag second")
+        s.wait(r"second on 1 run")
+        tags = s.sql("SELECT tag, run FROM tags ORDER BY tag")
+        check(tags == [["first", 1], ["second", 2]], f"tags: {tags}")
+        s.keys("q")
+        s.wait(r"^END")
+        log = os.path.join(s.sql("SELECT output FROM runs ORDER BY run DESC")[0][0], "commands.log")
+        kept = os.path.join(s.folder, "kept.log")
+        shutil.copy(log, kept)
+        with open(kept, encoding="utf-8") as file:
+            text = file.read()
+        check("runs.choose @1\n" in text and "runs.mark @2\n" in text, f"runs by their order: {text}")
+        check(" start solid/tube_pull.lua " in text and bench.SCENES not in text, f"scenes by their names: {text}")
+        with Bench(replay=kept) as other:
+            other.wait(r"^END|done *$", patience=100)
+            other.until("its tags", lambda: other.sql("SELECT tag, run FROM tags ORDER BY tag") == tags)
+
+
+@test
 def a_stop_is_replayed_at_its_frame():
     with Bench("solid/tube_pull.lua --set particles=1500 --set duration=4 --precision f64") as s:
         s.wait(r"frame +[3-9]/")

@@ -136,6 +136,25 @@ def curves_are_drawn(s):
     s.wait(r"did\s+you\s+mean\s+'kinetic'")
 
 
+@covers("runs.choose", start=None)
+def the_cursor_goes_to_a_run(s):
+    ids = runs(s)
+    s.do(f"runs.choose {ids[0]}")
+    s.do("runs.tag oldest")
+    s.until("its tag", lambda: s.sql("SELECT id FROM tags JOIN runs USING (run)") == [[ids[0]]])
+    s.do("runs.filter eta>0.3")
+    s.wait(r"1 of 3 runs")
+    s.do(f"runs.choose {ids[0]}")
+    s.wait(r"not among the runs")
+    # What acts on the row under the cursor is in the log with the row.
+    s.do(f"save-commands {s.folder}/all.log")
+    s.until("the log", lambda: os.path.exists(f"{s.folder}/all.log"))
+    with open(f"{s.folder}/all.log", encoding="utf-8") as file:
+        lines = file.read().splitlines()
+    tagged = lines.index("- runs.tag oldest")
+    check(lines[tagged - 1] == f"- runs.choose {ids[0]}", f"the log: {lines}")
+
+
 @covers("runs.tag", "runs.note", start=None)
 def remarks_go_to_the_ledger(s):
     ids = runs(s)
@@ -244,7 +263,7 @@ def ascii_alone(s):
     s.wait(r"3 of 3 runs")
 
 
-@covers("sweep.choose", "sweep.run", "sweep.measure", "sweep.axes", "sweep.slice", "sweep.up", "sweep.down", "sweep.left", "sweep.right", "sweep.back", start=None, width=100, height=30)
+@covers("sweep.choose", "sweep.open", "sweep.run", "sweep.measure", "sweep.axes", "sweep.slice", "sweep.up", "sweep.down", "sweep.left", "sweep.right", "sweep.back", start=None, width=100, height=30)
 def a_sweep_fills_its_grid(s):
     os.mkdir(f"{s.folder}/sweeps")
     with open(f"{s.folder}/sweeps/little.lua", "w", encoding="utf-8") as file:
@@ -274,10 +293,13 @@ def a_sweep_fills_its_grid(s):
     s.wait(r"break_stretch down, pull across")
     s.keys("Enter")
     s.wait(r"frame 0 of 1")
+    s.keys("G")
+    s.wait(rf"- runs\.open {s.sql('SELECT id FROM runs ORDER BY run')[0][0]}", "the log has the run that was under the cursor")
+    s.keys("G")
     s.do("screen sweep")
     s.keys("BSpace")
     s.wait(r"Sweeps at hand")
-    s.do("sweep.choose little.lua")
+    s.do("sweep.open little.lua")
     s.wait(r"12 done +of 12$", "what is done is known again", patience=60)
 
 

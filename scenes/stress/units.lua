@@ -10,7 +10,7 @@ return s.scene {
   gravity  = { 0, -10 * length, 0 },
   solids   = { { shape = s.box { min = { -0.3 * length, 0.05 * length, -0.3 * length }, max = { 0.3 * length, 0.65 * length, 0.3 * length } },
                  velocity = { 0.5 * length, -4 * length, 0 },
-                 material = { density = density, elastic = { E = E, nu = 0.3 }, damage = { sigma_c = 0.1 * E, eta = 0.01 } } } },
+                 material = { density = density, elastic = { E = E, nu = 0.3 }, damage = { sigma_c = 0.02 * E, eta = 0.01 } } } },
   walls    = { { point = { 0, 0, 0 }, normal = "y", contact = "separate", friction = 0.2 } },
   expect   = { energy_gain = 0.02, determinant_min = 0.2, broken_fraction = { 0.01, 1 },
                same_as = p.variant ~= "metre" and { variant = "metre", length = length, tolerance = 1e-3 } or nil },

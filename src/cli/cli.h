@@ -20,7 +20,7 @@ typedef struct cli_scene_options {
 
 typedef int command_handler(int count, char **arguments);
 
-command_handler command_run, command_check, command_explain, command_runs, command_render, command_plot, command_export, command_mesh, command_doctor, command_bench, command_sweep, command_stress, command_help, command_workbench;
+command_handler command_run, command_check, command_explain, command_runs, command_render, command_plot, command_export, command_mesh, command_doctor, command_bench, command_sweep, command_stress, command_accuracy, command_help, command_workbench;
 
 typedef struct command {
     const char *name, *usage, *help;

@@ -1,6 +1,7 @@
 /* sunder plot: measures of runs over time, or against a parameter; in the terminal, or as a figure by gnuplot. */
 #include "base/json.h"
 #include "base/memory.h"
+#include "cli/chart_print.h"
 #include "cli/gnuplot.h"
 #include "cli/runs.h"
 #include "store/ledger_names.h"
@@ -133,32 +134,6 @@ static status collect(plot_command *c, int count, char **names, report *r) {
 
 /* ---- as text ----------------------------------------------------------------------------------------------------- */
 
-static void put_glyph(uint32_t glyph) {
-    if (glyph < 0x80) putchar((int)glyph);
-    else printf("%c%c%c", 0xe0 | (int)(glyph >> 12), 0x80 | (int)(glyph >> 6 & 0x3f), 0x80 | (int)(glyph & 0x3f));
-}
-
-static int colour_of(int series) {
-    static const int colours[] = {36, 33, 35, 32, 31, 34};
-    return colours[series % 6];
-}
-
-static void print_cells(const view_chart_options *o, const view_chart_cell *cells, bool colour) {
-    for (int row = 0; row < o->height; row++) {
-        int now = -1;
-        for (int column = 0; column < o->width; column++) {
-            const view_chart_cell *cell = &cells[row * o->width + column];
-            if (colour && cell->series != now) {
-                if (cell->series < 0) printf("\033[0m");
-                else printf("\033[%dm", colour_of(cell->series));
-                now = cell->series;
-            }
-            put_glyph(cell->glyph);
-        }
-        printf(colour && now >= 0 ? "\033[0m\n" : "\n");
-    }
-}
-
 static void choose_size(const plot_command *c, view_chart_options *o) {
     struct winsize size;
     bool known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
@@ -179,9 +154,9 @@ static status print_chart(const plot_command *c, report *r) {
     if (good) {
         if (c->measure_count == 1) printf("%s\n", c->measures[0]);
         view_chart(series, c->curve_count, &o, cells);
-        print_cells(&o, cells, colour);
+        chart_print(&o, cells, colour);
         for (int i = 0; i < c->curve_count && c->curve_count > 1; i++) {
-            if (colour) printf("\033[%dm", colour_of(i));
+            if (colour) printf("\033[%dm", chart_colour(i));
             printf("%c  %s%s%s\n", view_chart_letter(i), c->names[i], c->curves[i].count ? "" : "  (nothing)", colour ? "\033[0m" : "");
         }
     }

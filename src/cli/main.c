@@ -20,6 +20,9 @@ static const command commands[] = {
     {"stress", "stress [CASE]… [--effect NAME]… [--quick | --full] [--precision f32|f64|both] [--simd NAME] [--threads N] [-j N] [--time-limit S]\n"
                "                [--db FILE] [--json] [--quiet] [--verbose]   stress --list | --last | --measures  [--json]",
      "make the hard cases (scenes/stress) and hold each against what it must come to; --list: what they cover", command_stress},
+    {"accuracy", "accuracy SCENE [--axis NAME]… [--levels N] [--measure NAME]… [--frames N] [--budget SECONDS] [--set KEY=VALUE]… [--recipe NAME] [--list]\n"
+                 "         [-j N] [--threads N] [--precision f32|f64] [--simd NAME] [--out DIR] [--csv FILE] [--db FILE] [--json] [--quiet]",
+     "what accuracy costs in time: the scene coarser and finer along each axis, errors, orders, the frontier; what is done already is left out", command_accuracy},
     {"runs", "runs list [--where CONDITION] [--limit N] | show RUN | diff RUN RUN | best [MEASURE] [--most] [--scene TEXT] | query [NAME [KEY=VALUE]…]\n"
              "         runs sql QUERY [KEY=VALUE]… | plot RUN… | tag RUN [TAG]… [--remove] | note RUN TEXT | rm RUN… [--yes] [--keep-files]\n"
              "         runs reproduce RUN [--out DIR] [--threads N]      all with [--db FILE] [--json]",

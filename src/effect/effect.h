@@ -24,6 +24,21 @@ typedef enum parameter_kind {
 
 enum { PARAMETER_LIMIT = 12, EFFECT_LIMIT = 32 };
 
+/* Which way a parameter trades time for accuracy, for `sunder accuracy`: what has a rule becomes an axis of it. */
+typedef enum accuracy_kind {
+    ACCURACY_NONE,       /* it says what is simulated, not how well */
+    ACCURACY_FACTOR,     /* the next finer value is `finer` times as large; 0 is as fine as can be */
+    ACCURACY_DIFFERENCE, /* the next finer value is larger by `finer` */
+    ACCURACY_CHOICE,     /* the next finer choice is `finer` (1 or −1) places on */
+} accuracy_kind;
+
+typedef struct accuracy_rule {
+    accuracy_kind kind;
+    double finer;
+    const char *when; /* it matters only where this key of the same effect has the value `is`; NULL: always */
+    double is;
+} accuracy_rule;
+
 typedef struct parameter {
     const char *key;  /* the scene's word, e.g. "sigma_c" */
     const char *unit; /* in base quantities: "1", "mass/(length time^2)", "time" … */
@@ -40,6 +55,7 @@ typedef struct parameter {
     const char *scale; /* the field that scales this parameter from particle to particle, where a scene gives a function of place; NULL: one
                         * value a material */
     const char *short_form; /* the effect may be written as a bare value or array meaning this key (any non-NULL text) */
+    accuracy_rule accuracy;
 } parameter;
 
 /* A per-particle array that an effect needs. */

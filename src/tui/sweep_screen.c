@@ -192,9 +192,9 @@ static status choose(tui_app *app, const char *argument, report *r) {
     sweep_state *s = sweep_state_of(app);
     if (!s->loaded || argument[0]) return app_do(app, "sweep.open", argument, r);
     int run = sweep_run_at(s, s->at[0], s->at[1]);
-    if (run < 0 || !s->cells[run].id[0]) return report_set(r, STATUS_INPUT, "There is no run here yet.");
+    if (run < 0 || !s->cells[run].last.id[0]) return report_set(r, STATUS_INPUT, "There is no run here yet.");
     app_show(app, &screen_runs);
-    return app_do(app, "runs.open", s->cells[run].id, r);
+    return app_do(app, "runs.open", s->cells[run].last.id, r);
 }
 
 static status run_sweep(tui_app *app, const char *argument, report *r) {

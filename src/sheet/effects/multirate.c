@@ -13,9 +13,11 @@ static void declare(const effect_values *own, sheet_plan *p) {
 
 static const parameter parameters[] = {
     [KEY_LEVELS] = {.key = "levels", .unit = "1", .doc = "how often a step may be halved where bonds are stiffer", .minimum = 0, .maximum = 5,
-                    .fallback = {4}, .live = true, .short_form = "multirate = 4"},
-    [KEY_CRACKING] = PARAMETER_PLAIN("cracking", "1", "how often it is halved again where bonds break", 0, 2, 1),
-    [KEY_HEATED] = PARAMETER_PLAIN("heated", "1", "how often it is halved again where the diffused quantity swells or softens some bonds more than others", 0, 2, 1),
+                    .fallback = {4}, .live = true, .short_form = "multirate = 4", .accuracy = {.kind = ACCURACY_DIFFERENCE, .finer = -2}},
+    [KEY_CRACKING] = {.key = "cracking", .unit = "1", .doc = "how often it is halved again where bonds break", .maximum = 2, .fallback = {1}, .live = true,
+                      .accuracy = {.kind = ACCURACY_DIFFERENCE, .finer = 1}},
+    [KEY_HEATED] = {.key = "heated", .unit = "1", .doc = "how often it is halved again where the diffused quantity swells or softens some bonds more than others",
+                    .maximum = 2, .fallback = {1}, .live = true, .accuracy = {.kind = ACCURACY_DIFFERENCE, .finer = 1}},
 };
 
 static const sheet_stages stages = {.declare = declare};

@@ -78,7 +78,7 @@ static const parameter parameters[KEY_COUNT] = {
                       .live = true, .logarithmic = true},
     [KEY_RESIDUAL] = DAMAGE_RESIDUAL(0.999),
     [KEY_TOLERANCE] = {.key = "tolerance", .unit = "1", .doc = "relative residual of the solve on the grid", .minimum = 1e-14, .maximum = 0.1,
-                       .fallback = {1e-4}, .live = true, .logarithmic = true},
+                       .fallback = {1e-4}, .live = true, .logarithmic = true, .accuracy = {.kind = ACCURACY_FACTOR, .finer = 0.1}},
 };
 
 static const effect_field fields[] = {

@@ -230,7 +230,7 @@ static void largest_eigenvalue_is_bounded_closely(void) {
         if (i % 4 == 1) s[1] = s[0] * (1 - near);
         if (i % 4 == 2) s[1] = s[0] * (1 - near), s[2] = 0;
         if (i % 4 == 3) s[1] = s[0] * (1 - near), s[2] = s[0] * (1 + near);
-        random_rotation(i, R);
+        random_rotation(SEED, i, R);
         double ratio = sym3v_largest(tensor_of(s, R))[0] / fmax(fmax(s[0], s[1]), s[2]);
         least = fmin(least, ratio), most = fmax(most, ratio);
     }
@@ -245,7 +245,7 @@ static void crossed_fibres_do_not_add_up(void) {
     CHECK_ROW("METHOD 3", "step limit's bound at rest, two families at right angles: ρ0 c² over its exact value", 1, point_wave(p) / (mu + lambda + 2 * mu), 0.012);
     double R[9], F[9] = {0};
     for (uint64_t i = 0; i < 100; i++) {
-        random_rotation(i, R);
+        random_rotation(SEED, i, R);
         point_set(p, FIELD_DEFORMATION, R);
         CHECK_NEAR(point_wave(p), mu + lambda + 2 * mu, 0.012 * (mu + lambda + 2 * mu));
     }

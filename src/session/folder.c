@@ -87,7 +87,9 @@ static void log_turns(session *s) {
     report r;
     ledger_turn *rows = memory_allocate_array((size_t)k->count + 1, sizeof *rows);
     for (int i = 0; rows && i < k->count; i++) rows[i] = (ledger_turn){k->turns[i].frame, k->turns[i].path, k->turns[i].value};
+    pthread_mutex_lock(&s->ledger_lock);
     status code = rows ? ledger_turns(s->ledger, s->id, rows, k->count, &r) : report_set(&r, STATUS_SYSTEM, "out of memory for the turns of knobs");
+    pthread_mutex_unlock(&s->ledger_lock);
     session_tolerate(s, code, &r);
     memory_free(rows, ((size_t)k->count + 1) * sizeof *rows);
 }

@@ -38,6 +38,42 @@ typedef struct session_knobs_state {
     atomic_int version; /* grows when a value of `asked` changes */
 } session_knobs_state;
 
+/* What a screen shows of a frame, taken from the simulation and not yet shown. */
+typedef struct session_picture {
+    double *position, *scalar; /* [particles][3], [particles]; owned */
+    int64_t particles;
+    int colour; /* what `scalar` is, by index */
+    session_state state;
+    int64_t frame, step;
+    double time, dt_min, dt_max, seconds_per_frame, step_wall;
+    int turns;
+    session_sample sample;
+    int stage_count;
+    session_stage stages[SESSION_STAGES];
+} session_picture;
+
+/* A frame on its way out: copies of everything, so that the simulation can go on. */
+enum { FILING_FRAME = 1, FILING_LOG = 2, FILING_CHECKPOINT = 4, FILING_PICTURE = 8 };
+typedef struct filing_work {
+    int parts; /* of the above: what is to be done */
+    frame_header header;
+    record_list frame, checkpoint;
+    simulation_measures measures;
+    double seconds; /* of the frame's steps */
+    session_picture picture;
+} filing_work;
+
+typedef struct filing {
+    pthread_t thread;
+    bool threaded;
+    pthread_mutex_t lock; /* guards what follows; `work` is the thread's own while busy */
+    pthread_cond_t changed;
+    bool busy, ending;
+    status outcome; /* the first failure */
+    report report;
+    filing_work work;
+} filing;
+
 struct session {
     session_options options;
     run_request request;
@@ -51,7 +87,10 @@ struct session {
     pthread_t thread;
     bool threaded;
     atomic_int stop, abandon, paused, steps_asked, ended;
-    pthread_mutex_t lock; /* guards shown */
+    pthread_mutex_t lock; /* guards shown and warning */
+    pthread_mutex_t ledger_lock; /* of every call while both threads run */
+    filing filing;
+    int64_t checkpointed; /* the last frame whose checkpoint was handed over, −1: none */
     session_snapshot shown;
     session_knobs_state knobs;
     atomic_llong pause_at; /* −1: none */
@@ -89,7 +128,19 @@ status turns_write(session *s, report *r);
 /* publish.c */
 void publish_start(session *s);
 void publish_state(session *s, session_state state);
-status publish_frame(session *s, report *r);
+/* Copies what the screen needs of the frame that has been reached; then, on the thread that files it, shows it. Shape: session_picture. Errors: memory.
+ * picture_free on every way out. */
+status picture_take(session *s, session_picture *p, report *r);
+status picture_show(session *s, const session_picture *p, report *r);
+void picture_free(session_picture *p);
+
+/* filing.c: starts the thread; waits until it has nothing to do, and says what has failed so far; the same, then gives it work, whose memory it
+ * takes over in any case; ends it when it is done. */
+status filing_start(session *s, report *r);
+status filing_wait(session *s, report *r);
+status filing_hand_over(session *s, filing_work *w, report *r);
+void filing_clear(filing_work *w);
+void filing_end(session *s);
 
 /* colours.c: what pictures can be coloured by; the field wanted; its values; and their way into the snapshot, whose lock the caller holds */
 void colour_begin(session *s);
@@ -118,7 +169,7 @@ void turns_free(session *s);
 /* loop.c */
 void *session_loop(void *argument);
 /* Warns on the screen and in the ledger. */
-void session_warn(session *s, const char *text);
+void session_warn(session *s, int64_t frame, const char *text);
 /* An event for the screen and the ledger. */
 void session_tell(session *s, int64_t frame, const char *kind, const char *text);
 /* A ledger that fails must not cost the run its frames: the user is warned and the run goes on. */

@@ -28,52 +28,32 @@ static void show_event(session *s, int64_t frame, const char *kind, const char *
 void session_tell(session *s, int64_t frame, const char *kind, const char *text) {
     report r;
     show_event(s, frame, kind, text);
-    session_tolerate(s, ledger_event(s->ledger, s->id, frame, kind, text, &r), &r);
+    pthread_mutex_lock(&s->ledger_lock);
+    status code = ledger_event(s->ledger, s->id, frame, kind, text, &r);
+    pthread_mutex_unlock(&s->ledger_lock);
+    session_tolerate(s, code, &r);
 }
 
-void session_warn(session *s, const char *text) {
+static void set_warning(session *s, const char *prefix, const char *text) {
+    pthread_mutex_lock(&s->lock);
+    snprintf(s->warning, sizeof s->warning, "%s%.480s", prefix, text);
+    pthread_mutex_unlock(&s->lock);
+}
+
+void session_warn(session *s, int64_t frame, const char *text) {
     report ignored;
-    int64_t frame = simulation_frame(s->simulation);
-    snprintf(s->warning, sizeof s->warning, "%s", text);
+    set_warning(s, "", text);
     show_event(s, frame, "warning", text);
+    pthread_mutex_lock(&s->ledger_lock);
     (void)ledger_event(s->ledger, s->id, frame, "warning", text, &ignored);
+    pthread_mutex_unlock(&s->ledger_lock);
 }
 
 void session_tolerate(session *s, status code, const report *r) {
     if (code == STATUS_OK) return;
     char text[sizeof s->warning];
     report_format(r, text, sizeof text);
-    snprintf(s->warning, sizeof s->warning, "ledger: %.480s", text);
-}
-
-static void log_frame(session *s, double seconds) {
-    const solid_measures *m = &s->measures.solid;
-    const ledger_value values[] = {
-        {"kinetic", m->kinetic}, {"elastic", m->elastic}, {"fibre", m->fibre}, {"gravitational", m->gravitational},
-        {"grip_work", m->grip_work}, {"dissipated", s->measures.dissipated}, {"damage_mean", m->damage_mean},
-        {"damage_max", m->damage_max}, {"broken_fraction", m->broken_fraction},
-        {"crack_normal_x", s->measures.has_crack ? s->measures.crack_normal[0] : NAN},
-        {"crack_normal_y", s->measures.has_crack ? s->measures.crack_normal[1] : NAN},
-        {"crack_normal_z", s->measures.has_crack ? s->measures.crack_normal[2] : NAN},
-        {"determinant_min", m->determinant_min}, {"determinant_max", m->determinant_max}, {"speed_max", m->speed_max},
-        {"fibre_stretch_min", m->stretch_min}, {"fibre_stretch_max", m->stretch_max},
-        {"dt_min", s->measures.dt_min}, {"mass", m->mass},
-        {"momentum_x", m->momentum[0]}, {"momentum_y", m->momentum[1]}, {"momentum_z", m->momentum[2]},
-        {"angular_momentum_x", m->angular_momentum[0]}, {"angular_momentum_y", m->angular_momentum[1]},
-        {"angular_momentum_z", m->angular_momentum[2]},
-        {"grip_impulse_x", m->grip_impulse[0]}, {"grip_impulse_y", m->grip_impulse[1]}, {"grip_impulse_z", m->grip_impulse[2]},
-        {"bond_stretch_max", s->measures.has_sheet ? s->measures.sheet.stretch_max : NAN},
-        {"diffused_total", s->measures.has_sheet ? s->measures.sheet.diffused_total : NAN},
-    };
-    report r;
-    session_tolerate(s, ledger_frame(s->ledger, s->id, s->measures.frame, s->measures.time, s->measures.steps, seconds, values,
-                                     sizeof values / sizeof *values, &r), &r);
-    if (m->damage_max > 0.9 && !s->first_crack_told) {
-        char text[96];
-        s->first_crack_told = true;
-        snprintf(text, sizeof text, "first particle over 0.9 at t = %.6g", s->measures.time);
-        session_tell(s, s->measures.frame, "first_crack", text);
-    }
+    set_warning(s, "ledger: ", text);
 }
 
 static void take_sample(session *s, double seconds) {
@@ -93,70 +73,62 @@ static frame_header header_of(const session *s) {
                           .precision = plan->precision == 32 ? "f32" : "f64", .simd = plan->simd};
 }
 
-static status write_frame(session *s, report *r) {
-    record_list records = {0};
-    frame_header header = header_of(s);
-    status code = simulation_frame_records(s->simulation, &records, r);
-    if (code == STATUS_OK) code = frame_write(s->folder, &header, &records, s->options.deflate, r);
-    record_clear(&records);
-    return code;
-}
-
-/* Thins older checkpoints when the new one is safe. */
-static status thin_checkpoints(session *s, report *r) {
-    if (s->options.keep_bytes <= 0) return s->options.keep > 0 ? checkpoint_thin(s->folder, s->options.keep, r) : STATUS_OK;
-    int64_t over;
-    char text[160];
-    status code = checkpoint_ring(s->folder, s->options.keep_bytes, &over, r);
-    if (code != STATUS_OK || over == 0 || s->ring_told) return code;
-    s->ring_told = true;
-    snprintf(text, sizeof text, "the first checkpoint and the two newest are kept, %.0f bytes more than --keep allows", (double)over);
-    session_warn(s, text);
-    return STATUS_OK;
-}
-
-static status write_checkpoint(session *s, report *r) {
-    record_list records = {0};
-    frame_header header = header_of(s);
-    status code = simulation_save(s->simulation, &records, r);
-    if (code == STATUS_OK) code = turns_save(s, &records, r);
-    if (code == STATUS_OK) code = checkpoint_write(s->folder, &header, &records, r);
-    record_clear(&records);
-    return code == STATUS_OK ? thin_checkpoints(s, r) : code;
+static status gather_checkpoint(session *s, filing_work *w, report *r) {
+    w->parts |= FILING_CHECKPOINT;
+    s->checkpointed = w->header.frame;
+    status code = simulation_save(s->simulation, &w->checkpoint, r);
+    return code == STATUS_OK ? turns_save(s, &w->checkpoint, r) : code;
 }
 
 /* A branch has its past from its parent: its frames are there, and its rows. What it needs of its own is a checkpoint where it begins. */
-static status file_past(session *s, report *r) {
+static int past_parts(const session *s) {
     int64_t frame = s->measures.frame;
-    status code = frame_exists(s->folder, frame) ? STATUS_OK : write_frame(s, r);
     bool due = s->options.checkpoint_every > 0 && (frame == s->past_from || frame == s->past_until) && !checkpoint_exists(s->folder, frame);
-    return code == STATUS_OK && due ? write_checkpoint(s, r) : code;
+    return (frame_exists(s->folder, frame) ? 0 : FILING_FRAME) | (due ? FILING_CHECKPOINT : 0);
 }
 
-static status file_frame(session *s, double seconds, report *r) {
-    if (s->measures.frame <= s->past_until) return file_past(s, r);
-    status code = write_frame(s, r);
-    if (code != STATUS_OK) return code;
-    log_frame(s, seconds);
+static int due_parts(const session *s) {
+    if (s->measures.frame <= s->past_until) return past_parts(s);
     int every = s->options.checkpoint_every;
     bool due = every > 0 && (s->measures.frame % every == 0 || s->measures.frame == s->target || atomic_load(&s->stop));
-    return due ? write_checkpoint(s, r) : STATUS_OK;
+    return FILING_FRAME | FILING_LOG | (due ? FILING_CHECKPOINT : 0);
 }
 
-/* Measures the state that has been reached, files it (unless a resumed run's folder has it), shows it. */
+static status gather(session *s, int parts, filing_work *w, report *r) {
+    w->parts = (parts & ~FILING_CHECKPOINT) | FILING_PICTURE;
+    status code = parts & FILING_FRAME ? simulation_frame_records(s->simulation, &w->frame, r) : STATUS_OK;
+    if (code == STATUS_OK && parts & FILING_CHECKPOINT) code = gather_checkpoint(s, w, r);
+    return code == STATUS_OK ? picture_take(s, &w->picture, r) : code;
+}
+
+/* Measures the state that has been reached and hands it over to be filed (unless a resumed run's folder has it) and shown. */
 static status settle_frame(session *s, double seconds, bool file, report *r) {
     status code = simulation_measure(s->simulation, &s->measures, r);
     if (code != STATUS_OK) return code;
     const char *warning = simulation_take_warning(s->simulation);
-    if (warning[0]) session_warn(s, warning);
+    if (warning[0]) session_warn(s, s->measures.frame, warning);
     take_sample(s, seconds);
-    if (!file || s->measures.frame <= s->past_until) s->first_crack_told = s->measures.solid.damage_max > 0.9;
-    if (file && (code = file_frame(s, seconds, r)) != STATUS_OK) return code;
-    return publish_frame(s, r);
+    if (!file) s->checkpointed = s->measures.frame; /* a resumed run comes from there */
+    filing_work w = {.header = header_of(s), .measures = s->measures, .seconds = seconds};
+    code = gather(s, file ? due_parts(s) : 0, &w, r);
+    if (code == STATUS_OK) return filing_hand_over(s, &w, r);
+    filing_clear(&w);
+    return code;
 }
 
-/* While paused: waits for a step, an end of the pause, or a stop. True when a frame should be made. */
-static bool may_go_on(session *s) {
+/* A run that is stopped between two checkpoints leaves one where it stops. */
+static status settle_stop(session *s, report *r) {
+    int64_t frame = simulation_frame(s->simulation);
+    if (s->options.checkpoint_every <= 0 || atomic_load(&s->abandon) || s->checkpointed == frame || frame <= s->past_until) return STATUS_OK;
+    filing_work w = {.header = header_of(s), .measures = s->measures};
+    status code = gather_checkpoint(s, &w, r);
+    if (code == STATUS_OK) return filing_hand_over(s, &w, r);
+    filing_clear(&w);
+    return code;
+}
+
+/* While paused: waits for a step, an end of the pause, or a stop. True when a frame should be made. Who finds a run paused finds its frame filed. */
+static bool may_go_on(session *s, status *filed, report *r) {
     bool told = false;
     if (simulation_frame(s->simulation) < s->past_until && !atomic_load(&s->stop) && !atomic_load(&s->abandon))
         return true; /* a branch that was asked to begin paused does so where it begins, not where its parent's checkpoint is */
@@ -170,6 +142,7 @@ static bool may_go_on(session *s) {
             atomic_fetch_sub(&s->steps_asked, 1);
             return true;
         }
+        if (!told && (*filed = filing_wait(s, r)) != STATUS_OK) return false;
         if (!told) publish_state(s, SESSION_PAUSED);
         told = true;
         report ignored;
@@ -184,9 +157,12 @@ static status run_frames(session *s, report *r) {
     bool resumed = s->options.resume != NULL;
     status code = settle_frame(s, 0, !resumed, r);
     while (code == STATUS_OK && simulation_frame(s->simulation) < s->target) {
-        if (!may_go_on(s))
+        if (!may_go_on(s, &code, r)) {
+            if (code == STATUS_OK) code = settle_stop(s, r);
+            if (code != STATUS_OK) return code;
             return report_set(r, STATUS_INTERRUPTED, "interrupted after frame %lld of %lld", (long long)simulation_frame(s->simulation),
                               (long long)s->target);
+        }
         code = turns_act(s, r);
         if (code != STATUS_OK) return code;
         double start = session_clock();
@@ -217,8 +193,13 @@ static void finish(session *s) {
 
 void *session_loop(void *argument) {
     session *s = argument;
+    report trouble;
     report_clear(&s->report);
-    s->outcome = run_frames(s, &s->report);
+    s->outcome = filing_start(s, &s->report);
+    if (s->outcome == STATUS_OK) s->outcome = run_frames(s, &s->report);
+    status filed = filing_wait(s, &trouble);
+    if (filed != STATUS_OK && (s->outcome == STATUS_OK || s->outcome == STATUS_INTERRUPTED)) s->outcome = filed, s->report = trouble;
+    filing_end(s);
     finish(s);
     session_release_folder(s);
     publish_state(s, SESSION_ENDED);

@@ -28,25 +28,26 @@ void publish_start(session *s) {
     p->duration = (double)s->target / s->scene->fps;
 }
 
-/* Everything of the snapshot that changes between frames; the caller holds the lock. */
+/* Everything of the snapshot that changes between frames but what the simulation's thread alone knows; the caller holds the lock. */
 static void refresh(session *s, session_state state) {
     session_snapshot *p = &s->shown;
     p->version++;
     p->state = state;
-    p->outcome = s->outcome;
     snprintf(p->message, sizeof p->message, "%s", s->warning);
-    if (state == SESSION_ENDED && s->outcome != STATUS_OK) report_format(&s->report, p->message, sizeof p->message);
     p->wall = session_clock() - s->wall_start;
-    p->step_wall = s->step_wall;
-    p->unfinished = s->unfinished;
     p->pause_at = atomic_load(&s->pause_at);
-    p->turn_count = s->knobs.acted;
     p->knob_version = s->knobs.version;
 }
 
 void publish_state(session *s, session_state state) {
     pthread_mutex_lock(&s->lock);
+    session_snapshot *p = &s->shown;
     refresh(s, state);
+    p->outcome = s->outcome;
+    if (state == SESSION_ENDED && s->outcome != STATUS_OK) report_format(&s->report, p->message, sizeof p->message);
+    p->step_wall = s->step_wall;
+    p->unfinished = s->unfinished;
+    p->turn_count = s->knobs.acted;
     pthread_mutex_unlock(&s->lock);
 }
 
@@ -103,9 +104,8 @@ static void fill_points(session *s, const double *position) {
     if (first) fill_bounds(p);
 }
 
-static void fill_stages(session *s) {
+static void take_stages(const session *s, session_picture *p) {
     simulation_effort all[SESSION_STAGES];
-    session_snapshot *p = &s->shown;
     int count = simulation_efforts(s->simulation, all, SESSION_STAGES);
     double sum = 0;
     p->stage_count = count < SESSION_STAGES ? count : SESSION_STAGES;
@@ -116,41 +116,55 @@ static void fill_stages(session *s) {
     }
 }
 
-static void fill_numbers(session *s) {
-    session_snapshot *p = &s->shown;
-    p->frame = simulation_frame(s->simulation);
-    p->step = simulation_steps(s->simulation);
-    p->time = simulation_time(s->simulation);
-    p->dt = s->sample.dt;
-    p->dt_min = s->measures.dt_min;
-    p->dt_max = s->measures.dt_max;
-    p->now = s->sample;
-    p->seconds_per_frame = s->last_frame_wall;
-    p->seconds_left = s->last_frame_wall * (double)(s->target - p->frame);
+status picture_take(session *s, session_picture *p, report *r) {
+    size_t n = (size_t)simulation_get_plan(s->simulation)->particles;
+    *p = (session_picture){.particles = (int64_t)n, .colour = colour_wanted(s), .frame = simulation_frame(s->simulation),
+                           .state = atomic_load(&s->paused) ? SESSION_PAUSED : SESSION_RUNNING, .step = simulation_steps(s->simulation),
+                           .time = simulation_time(s->simulation), .dt_min = s->measures.dt_min, .dt_max = s->measures.dt_max,
+                           .seconds_per_frame = s->last_frame_wall, .step_wall = s->step_wall, .turns = s->knobs.acted, .sample = s->sample};
+    p->position = memory_allocate_array(n, 3 * sizeof *p->position);
+    p->scalar = memory_allocate_array(n, sizeof *p->scalar);
+    if (!p->position || !p->scalar) return report_set(r, STATUS_SYSTEM, "out of memory for the picture");
+    simulation_read(s->simulation, "position", p->position);
+    take_stages(s, p);
+    return colour_read(s, p->colour, p->scalar, r);
 }
 
-/* What the picture needs is read outside the lock, then copied. */
-status publish_frame(session *s, report *r) {
-    size_t n = (size_t)s->shown.particles;
-    int colour = colour_wanted(s);
-    double *position = memory_allocate_array(n, 3 * sizeof *position), *scalar = memory_allocate_array(n, sizeof *scalar);
-    status code = position && scalar ? colour_read(s, colour, scalar, r) : report_set(r, STATUS_SYSTEM, "out of memory for the picture");
+void picture_free(session_picture *p) {
+    size_t n = (size_t)p->particles;
+    memory_free(p->position, n * 3 * sizeof *p->position);
+    memory_free(p->scalar, n * sizeof *p->scalar);
+    p->position = p->scalar = NULL;
+}
+
+static void fill_numbers(session *s, const session_picture *from) {
+    session_snapshot *p = &s->shown;
+    p->frame = from->frame;
+    p->step = from->step;
+    p->time = from->time;
+    p->dt = from->sample.dt;
+    p->dt_min = from->dt_min;
+    p->dt_max = from->dt_max;
+    p->now = from->sample;
+    p->seconds_per_frame = from->seconds_per_frame;
+    p->seconds_left = from->seconds_per_frame * (double)(s->target - p->frame);
+    p->step_wall = from->step_wall;
+    p->turn_count = from->turns;
+    p->stage_count = from->stage_count;
+    memcpy(p->stages, from->stages, sizeof p->stages);
+}
+
+status picture_show(session *s, const session_picture *p, report *r) {
+    pthread_mutex_lock(&s->lock);
+    status code = reserve_points(&s->shown, s->shown.particles, r);
     if (code == STATUS_OK) {
-        simulation_read(s->simulation, "position", position);
-        pthread_mutex_lock(&s->lock);
-        code = reserve_points(&s->shown, s->shown.particles, r);
-        if (code == STATUS_OK) {
-            fill_points(s, position);
-            colour_fill(s, colour, scalar);
-        }
-        fill_numbers(s);
-        fill_stages(s);
-        push_history(&s->shown, &s->sample);
-        refresh(s, atomic_load(&s->paused) ? SESSION_PAUSED : SESSION_RUNNING);
-        pthread_mutex_unlock(&s->lock);
+        fill_points(s, p->position);
+        colour_fill(s, p->colour, p->scalar);
     }
-    memory_free(position, position ? n * 3 * sizeof *position : 0);
-    memory_free(scalar, scalar ? n * sizeof *scalar : 0);
+    fill_numbers(s, p);
+    push_history(&s->shown, &p->sample);
+    refresh(s, p->state);
+    pthread_mutex_unlock(&s->lock);
     return code;
 }
 

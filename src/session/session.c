@@ -97,7 +97,7 @@ static void tell_of_damaged(session *s, const report *warning) {
     char text[512];
     if (warning->code == STATUS_OK) return;
     report_format(warning, text, sizeof text);
-    session_warn(s, text);
+    session_warn(s, simulation_frame(s->simulation), text);
 }
 
 /* Back to the last checkpoint; frames after it are written again. Nothing in the folder is touched before all that could be refused has been. */
@@ -260,6 +260,10 @@ status session_start(const session_options *options, session **out, script_repor
     s->wall_start = session_clock();
     pthread_mutex_init(&s->lock, NULL);
     pthread_mutex_init(&s->knobs.lock, NULL);
+    pthread_mutex_init(&s->ledger_lock, NULL);
+    pthread_mutex_init(&s->filing.lock, NULL);
+    pthread_cond_init(&s->filing.changed, NULL);
+    s->checkpointed = -1;
     atomic_store(&s->pause_at, -1);
     s->past_until = -1;
     atomic_store(&s->paused, options->start_paused);
@@ -354,6 +358,9 @@ void session_destroy(session *s) {
     session_snapshot_free(&s->shown);
     json_free(&s->summary);
     turns_free(s);
+    pthread_cond_destroy(&s->filing.changed);
+    pthread_mutex_destroy(&s->filing.lock);
+    pthread_mutex_destroy(&s->ledger_lock);
     pthread_mutex_destroy(&s->knobs.lock);
     pthread_mutex_destroy(&s->lock);
     memory_free(s, sizeof *s);

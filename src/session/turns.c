@@ -152,7 +152,8 @@ static status join_lists(session *s, const turn_list *file, const turn_list *sav
     bool same = true;
     for (; before < file->count && file->items[before].frame < checkpoint; before++)
         same = same && before < saved->count && same_turn(&file->items[before], &saved->items[before]);
-    if (!same || before != saved->count) session_warn(s, "turns.json is not what the checkpoint was made with: the checkpoint's turns count");
+    if (!same || before != saved->count)
+        session_warn(s, simulation_frame(s->simulation), "turns.json is not what the checkpoint was made with: the checkpoint's turns count");
     for (int i = 0; i < saved->count && code == STATUS_OK; i++) code = add_turn(&s->knobs, &saved->items[i], r);
     for (int i = 0; i < file->count && code == STATUS_OK; i++)
         if (file->items[i].frame >= checkpoint && file->items[i].frame <= through) code = add_turn(&s->knobs, &file->items[i], r);
@@ -200,7 +201,7 @@ static void drop_turn(session *s, const report *r) {
     memmove(k->turns + k->acted, k->turns + k->acted + 1, (size_t)(k->count - k->acted - 1) * sizeof *k->turns);
     k->count--;
     pthread_mutex_unlock(&k->lock);
-    session_warn(s, text);
+    session_warn(s, simulation_frame(s->simulation), text);
 }
 
 /* What was asked for while the others acted still counts for what is asked next. */

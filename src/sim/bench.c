@@ -185,7 +185,7 @@ static criterion criterion_of(const scene *s) {
 /* Φ = tr(A σ⁺ A σ⁺)/σc² with A = I + α (R a)(R a)ᵀ, in the stress' own axes; *bound is |σ|²/σc² ≥ Φ, which early outs look at. */
 static double driving_force(const criterion *c, const double F[9], double *bound) {
     double b[9], square[3], axis[3][3], Fa[3], sigma[3], along[3], phi = 0;
-    double J = F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+    double J = matrix_determinant(F);
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) b[3 * i + j] = F[3 * i] * F[3 * j] + F[3 * i + 1] * F[3 * j + 1] + F[3 * i + 2] * F[3 * j + 2];
         Fa[i] = F[3 * i] * FIBRE[0] + F[3 * i + 1] * FIBRE[1] + F[3 * i + 2] * FIBRE[2];

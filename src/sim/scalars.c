@@ -24,10 +24,6 @@ typedef struct derived {
     derive *from;
 } derived;
 
-static double determinant_of(const double F[9]) {
-    return F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
-}
-
 static void derive_speed(const simulation *s, const double *v, const double *none, int64_t count, double *out) {
     (void)s, (void)none;
     for (int64_t i = 0; i < count; i++) out[i] = vector_length(v + 3 * i);
@@ -50,9 +46,8 @@ static void derive_body(const simulation *s, const double *none, const double *n
 
 double derived_stretch(const double F[9]) {
     double b[9], value[3], vector[3][3];
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++) b[3 * r + c] = vector_dot(F + 3 * r, F + 3 * c);
-    eigen_symmetric(b, value, vector); /* of F Fᵀ */
+    matrix_gram(F, b);
+    eigen_symmetric(b, value, vector);
     return sqrt(fmax(value[0], 0));
 }
 
@@ -63,7 +58,7 @@ static void derive_stretch(const simulation *s, const double *F, const double *n
 
 static void derive_determinant(const simulation *s, const double *F, const double *none, int64_t count, double *out) {
     (void)s, (void)none;
-    for (int64_t i = 0; i < count; i++) out[i] = determinant_of(F + 9 * i);
+    for (int64_t i = 0; i < count; i++) out[i] = matrix_determinant(F + 9 * i);
 }
 
 /* The largest principal value of the Cauchy stress τ/J. */
@@ -71,7 +66,7 @@ static void derive_stress(const simulation *s, const double *tau, const double *
     (void)s;
     for (int64_t i = 0; i < count; i++) {
         const double *t = tau + 6 * i;
-        double a[9] = {t[0], t[3], t[5], t[3], t[1], t[4], t[5], t[4], t[2]}, value[3], vector[3][3], J = determinant_of(F + 9 * i);
+        double a[9] = {t[0], t[3], t[5], t[3], t[1], t[4], t[5], t[4], t[2]}, value[3], vector[3][3], J = matrix_determinant(F + 9 * i);
         eigen_symmetric(a, value, vector);
         out[i] = J > 1e-6 ? value[0] / J : 0;
     }

@@ -2,6 +2,7 @@
 #ifndef SUNDER_SOLID_ELASTICITY_H
 #define SUNDER_SOLID_ELASTICITY_H
 
+#include "base/eigen.h"
 #include "solid/moduli.h"
 #include "solid/tensor.h"
 
@@ -42,7 +43,7 @@ static inline void elastic_energy(tile_work *w, real mu, real lambda, double (*s
         int k = p / PACK, lane = p % PACK;
         double F[9];
         for (int c = 0; c < 9; c++) F[c] = (double)field_at(F_field, w->tile->first_pack + k, c, 0)[lane];
-        double J = F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+        double J = matrix_determinant(F);
         double g = (double)w->scratch->degradation[k * PACK + lane], g_volume = J >= 1 ? g : 1;
         double density = g * (double)mu * shear(F, J) + g_volume * 0.5 * (double)lambda * (J - 1) * (J - 1);
         density *= scale_of(w->state, w->state->stiffness_scale, w->tile->first_pack + k, lane);

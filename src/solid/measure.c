@@ -1,4 +1,5 @@
 /* What a frame reports: sums in f64, tile by tile, added in the tiles' order. */
+#include "base/eigen.h"
 #include "base/memory.h"
 #include "base/threads.h"
 #include "solid/tensor.h"
@@ -30,7 +31,7 @@ static void add_particle(const solid *s, const solid_tile *tile, int p, double i
         F[c] = (double)field_at(&s->fields[FIELD_DEFORMATION], pack, c, 0)[lane];
         affine2 += C[c] * C[c];
     }
-    double J = F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+    double J = matrix_determinant(F);
     m->mass += mass;
     m->kinetic += 0.5 * mass * (speed2 + inertia * affine2);
     m->angular_momentum[0] += mass * (x[1] * v[2] - x[2] * v[1] + inertia * (C[7] - C[5]));

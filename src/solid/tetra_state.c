@@ -1,4 +1,5 @@
 /* What leaves the engine of tetrahedra: measures, fields at the vertices, the state for a checkpoint. */
+#include "base/eigen.h"
 #include "base/memory.h"
 #include "solid/tensor.h"
 #include "solid/tetra.h"
@@ -33,7 +34,7 @@ static void add_vertex(const tetra *m, int64_t v, solid_measures *out) {
 static double determinant_of(const solid *s, int32_t pack, int lane) {
     double F[9];
     for (int c = 0; c < 9; c++) F[c] = (double)field_at(&s->fields[FIELD_DEFORMATION], pack, c, 0)[lane];
-    return F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+    return matrix_determinant(F);
 }
 
 static void add_tile(const solid *s, const solid_tile *tile, tile_scratch *scratch, solid_measures *out) {

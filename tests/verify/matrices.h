@@ -2,15 +2,12 @@
 #ifndef SUNDER_TESTS_VERIFY_MATRICES_H
 #define SUNDER_TESTS_VERIFY_MATRICES_H
 
+#include "base/eigen.h"
 #include "base/random.h"
 
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
-
-static inline double determinant(const double F[9]) {
-    return F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
-}
 
 static inline double norm(const double *v, int n) {
     double sum = 0;
@@ -56,7 +53,7 @@ static inline void random_rotation(uint64_t seed, uint64_t i, double R[9]) {
 static inline void polar_rotation(const double F[9], double R[9]) {
     memcpy(R, F, 9 * sizeof *R);
     for (int n = 0; n < 100; n++) {
-        double J = determinant(R);
+        double J = matrix_determinant(R);
         const double C[9] = {R[4] * R[8] - R[5] * R[7], R[5] * R[6] - R[3] * R[8], R[3] * R[7] - R[4] * R[6],
                              R[2] * R[7] - R[1] * R[8], R[0] * R[8] - R[2] * R[6], R[1] * R[6] - R[0] * R[7],
                              R[1] * R[5] - R[2] * R[4], R[2] * R[3] - R[0] * R[5], R[0] * R[4] - R[1] * R[3]};

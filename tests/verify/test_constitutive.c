@@ -107,7 +107,7 @@ static double qr_energy(const double F[9], const double B[9], double mu, double 
     }
     /* The third axis completes a right-handed frame: the sign of the determinant goes to r33. */
     const double Q[9] = {q[0][0], q[1][0], q[2][0], q[0][1], q[1][1], q[2][1], q[0][2], q[1][2], q[2][2]};
-    if (determinant(Q) < 0) r[2][2] = -r[2][2];
+    if (matrix_determinant(Q) < 0) r[2][2] = -r[2][2];
     double square = 0, J = r[0][0] * r[1][1] * r[2][2];
     for (int i = 0; i < 3; i++)
         for (int j = i; j < 3; j++) square += r[i][j] * r[i][j];
@@ -126,8 +126,8 @@ static void closed_form_is_the_qr_form(void) {
         random_matrix(SEED, i, i % 3 ? 1.5 : 0.5, F);
         if (i % 7 == 0) /* nearly singular: the third row almost in the plane of the others */
             for (int c = 0; c < 3; c++) F[6 + c] = F[c] + F[3 + c] + 1e-6 * F[6 + c];
-        inverted += determinant(F) < 0;
-        singular += fabs(determinant(F)) < 1e-5;
+        inverted += matrix_determinant(F) < 0;
+        singular += fabs(matrix_determinant(F)) < 1e-5;
         turn_fibres(p, B);
         point_set(p, FIELD_DEFORMATION, F);
         double energy = point_energy(p), reference = qr_energy(F, B, mu, lambda, mu * 2, mu * 0.7);
@@ -190,7 +190,7 @@ static void wave_modulus_bounds_the_acoustic_tensor(void) {
         random_rotation(SEED, i, R);
         turn_fibres(p, R);
         random_matrix(SEED, i, 0.6, F);
-        if (determinant(F) < 0.05) continue;
+        if (matrix_determinant(F) < 0.05) continue;
         random_rotation(SEED, i + 77777, N);
         for (int c = 0; c < 3; c++) n[c] = N[c];
         /* Second derivative of Ψ along F + s n⊗(Fᵀn'): longitudinal and transverse polarisations of a wave along n. */

@@ -11,8 +11,6 @@
 #include "verify/matrices.h"
 #include "verify/solid_point.h"
 
-#include "base/eigen.h"
-
 static const double E = 3, NU = 0.3, MU = 3 / 2.6, LAMBDA = 3 * 0.3 / (1.3 * 0.4);
 enum { SEED = 34, HISTORY_FIELD = 6, KEY_GAMMA = 0, KEY_GAMMA2, KEY_SIGMA_C = 0, KEY_BREAK_STRETCH, KEY_ALPHA = 3, KEY_RESIDUAL = 5 };
 
@@ -27,7 +25,7 @@ static void signed_stretches(const double F[9], double s[3], double axis[3][3]) 
     multiply_transposed(F, F, b);
     eigen_symmetric(b, s, axis);
     for (int i = 0; i < 3; i++) s[i] = sqrt(fmax(s[i], 0));
-    if (determinant(F) < 0) s[2] = -s[2];
+    if (matrix_determinant(F) < 0) s[2] = -s[2];
 }
 
 static material_point *corotated_point(uint32_t others) {
@@ -86,7 +84,7 @@ static void stress_is_the_formula(void) {
     for (uint64_t i = 0; i < 20000; i++) {
         double F[9], R[9], D[9], tau[9];
         random_matrix(SEED, i, i % 2 ? 1.5 : 0.4, F);
-        double J = determinant(F);
+        double J = matrix_determinant(F);
         if (J < 0.01) continue;
         polar_rotation(F, R);
         for (int c = 0; c < 9; c++) D[c] = 2 * MU * (F[c] - R[c]);
@@ -190,7 +188,7 @@ static void damage_degrades_tension_only(void) {
 
 /* Φ multiplied out: σ⁺ from this model's stress, R from Newton. */
 static double reference_phi(const double F[9], const double a[3], double alpha, double sigma_c) {
-    double J = determinant(F), s[3], axis[3][3], positive[9] = {0}, R[9], A[9], f[3] = {0};
+    double J = matrix_determinant(F), s[3], axis[3][3], positive[9] = {0}, R[9], A[9], f[3] = {0};
     signed_stretches(F, s, axis);
     for (int e = 0; e < 3; e++) {
         double sigma = (2 * MU * s[e] * (s[e] - 1) + LAMBDA * (J - 1) * J) / J;
@@ -213,7 +211,7 @@ static void damage_is_driven_by_this_stress(void) {
     for (uint64_t i = 0; i < 20000; i++) {
         double F[9], a[3], alpha = -random_unit(7, 0, i);
         random_matrix(SEED, i, i % 2 ? 0.5 : 0.15, F);
-        if (determinant(F) < 0.1) continue;
+        if (matrix_determinant(F) < 0.1) continue;
         for (int c = 0; c < 3; c++) a[c] = random_sign(SEED, 20 + (uint64_t)c, i);
         double length = norm(a, 3);
         for (int c = 0; c < 3; c++) a[c] /= length;

@@ -9,8 +9,6 @@
 #include "verify/matrices.h"
 #include "verify/solid_point.h"
 
-#include "base/eigen.h"
-
 enum { SEED = 21, DAMAGE_FIELD = 5, HISTORY_FIELD = 6, KEY_SIGMA_C = 0, KEY_BREAK_STRETCH, KEY_ETA, KEY_ALPHA, KEY_ALPHA2, KEY_AS_SHIPPED = 10 };
 
 static material_point *damage_point(double sigma_c, double eta, double alpha) {
@@ -62,7 +60,7 @@ static void uniform_damage_follows_its_exponential(void) {
 
 /* Φ multiplied out from its definition. */
 static double reference_phi(const double F[9], const double a[3], double alpha, double mu, double lambda, double sigma_c) {
-    double J = determinant(F), sigma[9], value[3], vector[3][3], positive[9] = {0}, R[9], A[9], B[9], f[3] = {0};
+    double J = matrix_determinant(F), sigma[9], value[3], vector[3][3], positive[9] = {0}, R[9], A[9], B[9], f[3] = {0};
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             double b = 0;
@@ -87,7 +85,7 @@ static void driving_force_is_its_definition(void) {
     for (uint64_t i = 0; i < 20000; i++) {
         double alpha = -random_unit(5, 0, i), F[9], a[3], length = 0, zero = 0;
         for (int c = 0; c < 9; c++) F[c] = (c % 4 == 0) + 0.5 * random_sign(SEED, (uint64_t)c, i);
-        if (determinant(F) < 0.1) continue;
+        if (matrix_determinant(F) < 0.1) continue;
         for (int c = 0; c < 3; c++) a[c] = random_sign(SEED, 20 + (uint64_t)c, i), length += a[c] * a[c];
         for (int c = 0; c < 3; c++) a[c] /= sqrt(length);
         material_point *p = damage_point(0.7, 0.1, alpha);
@@ -115,7 +113,7 @@ static void positive_part_with_repeated_values(void) {
         for (uint64_t i = 0; i < 2000; i++) {
             double M[9], Q[9], a[9] = {0}, positive[9] = {0}, scale = 1e-300;
             for (int c = 0; c < 9; c++) M[c] = random_sign(SEED, 40 + (uint64_t)c, i);
-            if (fabs(determinant(M)) < 0.05) continue;
+            if (fabs(matrix_determinant(M)) < 0.05) continue;
             polar_rotation(M, Q);
             for (int e = 0; e < 3; e++) {
                 scale = fmax(scale, fabs(spectra[k][e]));

@@ -60,8 +60,8 @@ static void piola_is_tau_without_the_inverse(void) {
                 double product = P[c - c % 3] * F[c % 3 * 3] + P[c - c % 3 + 1] * F[c % 3 * 3 + 1] + P[c - c % 3 + 2] * F[c % 3 * 3 + 2];
                 worst = fmax(worst, fabs(product - tau[place[c]]) / size);
             }
-            inverted += determinant(F) < 0;
-            if (corotated && determinant(F) < 0.05) continue; /* kinks, where the smallest stretch changes sides */
+            inverted += matrix_determinant(F) < 0;
+            if (corotated && matrix_determinant(F) < 0.05) continue; /* kinks, where the smallest stretch changes sides */
             for (int c = 0; c < 9; c++) D[c] = random_sign(SEED, 20 + (uint64_t)c, i), length += D[c] * D[c];
             for (int c = 0; c < 9; c++) D[c] /= sqrt(length);
             double second = (energy_at(p, F, h, D) - 2 * energy_at(p, F, 0, D) + energy_at(p, F, -h, D)) / (h * h);

@@ -14,8 +14,6 @@
 #include "verify/plasticity_f32.h"
 #include "verify/solid_point.h"
 
-#include "base/eigen.h"
-
 enum { SEED = 33, PLASTIC_FIELD = 9 };
 static const double E = 100, NU = 0.3, MU = 100 / 2.6;
 
@@ -113,12 +111,12 @@ static void returns_to_the_surface(void) {
     for (uint64_t i = 0; i < 100000; i++) {
         double F[9], G[9], H[9];
         for (int c = 0; c < 9; c++) F[c] = (c % 4 == 0) + (i % 2 ? 1.2 : 0.2) * random_sign(SEED, (uint64_t)c, i);
-        double J = determinant(F), before = deviator_norm(F);
+        double J = matrix_determinant(F), before = deviator_norm(F);
         if (fabs(J) < 0.01 || 2 * MU * before <= yield_stress) continue;
         map(p, F, G);
         strain = fmax(strain, fabs(strain_of(p) - (before - yield_stress / (2 * MU))) / before);
         off = fmax(off, fabs(2 * MU * deviator_norm(G) / yield_stress - 1));
-        volume = fmax(volume, fabs(determinant(G) / J - 1));
+        volume = fmax(volume, fabs(matrix_determinant(G) / J - 1));
         map(p, G, H);
         again = fmax(again, largest_difference(G, H));
         reference_return(F, yield_stress);
@@ -201,7 +199,7 @@ static void turning_commutes(void) {
         random_rotation(SEED, 2 * i, R);
         random_rotation(SEED, 2 * i + 1, Q);
         for (int c = 0; c < 9; c++) F[c] = (c % 4 == 0) + random_sign(SEED, (uint64_t)c, i);
-        if (fabs(determinant(F)) < 0.01) continue;
+        if (fabs(matrix_determinant(F)) < 0.01) continue;
         multiply(R, F, RFQ);
         multiply(RFQ, Q, RFQ);
         map(p, F, mapped);
@@ -259,7 +257,7 @@ static void collapsed_states(void) {
             compose(i, s, F);
             map(p, F, G);
             /* The product cancels from the scale of the largest value: that much of it is rounding, before and after. */
-            CHECK_NEAR(determinant(G), J, 1e-12 * fabs(J) + 1e-13 * largest * largest * fmax(largest, 1));
+            CHECK_NEAR(matrix_determinant(G), J, 1e-12 * fabs(J) + 1e-13 * largest * largest * fmax(largest, 1));
             compose(i, expected, F);
             /* A value that grows r times brings along r times the rounding of F. */
             CHECK(largest_difference(F, G) <= 1e-14 * largest * exp(9.3 - mean));
@@ -321,7 +319,7 @@ static void single_precision_agrees(void) {
             built = plastic_return_f32(simds[k], yield_stress, F);
             for (int lane = 0; built && lane < PLASTIC_LANES; lane++) {
                 worst = fmax(worst, largest_difference(F[lane], exact[lane]));
-                volume = fmax(volume, fabs(determinant(F[lane]) / determinant(exact[lane]) - 1));
+                volume = fmax(volume, fabs(matrix_determinant(F[lane]) / matrix_determinant(exact[lane]) - 1));
             }
         }
         if (built) printf("  %-6s worst difference %.1e, det %.1e\n", simds[k], worst, volume);

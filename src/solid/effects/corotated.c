@@ -131,8 +131,7 @@ static void wave(tile_work *w) {
 /* Σ (s_i − 1)², with the sign convention of the stress. */
 static double corotated_square(const double F[9], double J) {
     double b[9], value[3], axis[3][3], sum = 0;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) b[3 * i + j] = F[3 * i] * F[3 * j] + F[3 * i + 1] * F[3 * j + 1] + F[3 * i + 2] * F[3 * j + 2];
+    matrix_gram(F, b);
     eigen_symmetric(b, value, axis); /* descending: the third is the smallest */
     for (int i = 0; i < 3; i++) {
         const double *n = axis[i];

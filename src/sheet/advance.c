@@ -171,12 +171,12 @@ static void find_fault(const pack_work *w, int first, vec_mask good) {
 /* high + low + step, with high the rounded sum: the error of the addition is kept (Knuth's two-sum). Padding, which has no area, stays. */
 static void move(const pack_work *w) {
     sheet *s = w->state;
-    vec farthest = vec_all((real)(0.5 * s->definition.bodies[s->packs[w->pack].body].spacing));
+    vec farthest = vec_all((real)(0.5 * s->definition.bodies[s->packs[w->pack].body].spacing)), fastest = vec_all(0);
     for (int part = 0; part < PACK_PARTS; part++) {
         int first = part * VEC_LANES;
         int32_t self[VEC_LANES];
         for (int i = 0; i < VEC_LANES; i++) self[i] = w->pack * PACK + first + i;
-        vec high[4], low[4], way = vec_all(0), area = vec_load(s->area + (int64_t)w->pack * PACK + first);
+        vec high[4], low[4], way = vec_all(0), speed = vec_all(0), area = vec_load(s->area + (int64_t)w->pack * PACK + first);
         vec_gather4(s->node, self, NODE, high);
         vec_gather4(s->node + NODE_LOW, self, NODE, low);
         for (int c = 0; c < 3; c++) {
@@ -185,11 +185,15 @@ static void move(const pack_work *w) {
             low[c] = (high[c] - (sum - back)) + (moved - back);
             high[c] = sum;
             way = way + step * step;
+            speed = speed + v * v;
         }
+        fastest = vec_max(fastest, vec_select(area > 0, speed, vec_all(0)));
         vec_scatter4(node_at(s, w->pack, first), NODE, high);
         vec_scatter4(node_at(s, w->pack, first) + NODE_LOW, NODE, low);
         find_fault(w, first, way + (high[3] - high[3]) < farthest * farthest);
     }
+    real most = vec_largest(fastest);
+    if (most > w->result->fastest) w->result->fastest = most;
 }
 
 static void change_velocities(const pack_work *w) {

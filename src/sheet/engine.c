@@ -127,6 +127,17 @@ static void feed(sheet *s, const sheet_feed *feeds) {
     for (int k = 0; k < s->definition.source_count; k++) s->feeds[k] = feeds ? feeds[k] : (sheet_feed){.strength = 1};
 }
 
+static double fastest_now(const sheet *s) {
+    double most = 0;
+    for (int64_t pack = 0; pack < s->pack_count; pack++)
+        for (int i = 0; i < PACK; i++) {
+            double sum = 0;
+            for (int c = 0; c < 3; c++) sum += (double)s->velocity[(pack * 3 + c) * PACK + i] * (double)s->velocity[(pack * 3 + c) * PACK + i];
+            most = fmax(most, sum);
+        }
+    return sqrt(most);
+}
+
 static sheet *create(const sheet_definition *definition, report *r) {
     sheet *s = memory_allocate(sizeof *s);
     if (!s) {
@@ -147,16 +158,27 @@ static sheet *create(const sheet_definition *definition, report *r) {
     /* What the caller lends only for loading. */
     s->definition.position = s->definition.velocity = s->definition.diffused = NULL;
     sheet_diffuse(s, 0); /* what is held from the start */
+    s->speed = fastest_now(s);
     return s;
 }
+
+static const double way_a_step = 0.45; /* of a spacing; at half of one a step is refused */
 
 static rigid_boundary *boundaries(sheet *s) {
     return s->definition.boundaries;
 }
 
+static double finest_spacing(const sheet *s) {
+    double finest = HUGE_VAL;
+    for (int b = 0; b < s->definition.body_count; b++) finest = fmin(finest, s->definition.bodies[b].spacing);
+    return finest;
+}
+
+/* Bonds set the pace of what swings; a particle without any would still be flung past its neighbours. */
 static void limits(const sheet *s, double *limit) {
     for (int e = 0; e < SHEET_EFFECTS; e++) limit[e] = HUGE_VAL;
     double momentum = s->rates ? sheet_rates_limit(s) : 1 / sqrt(s->momentum_bound * s->stiffening);
+    if (s->speed > 0) momentum = fmin(momentum, way_a_step * finest_spacing(s) / s->speed);
     for (int e = 0; e < SHEET_EFFECTS; e++)
         if ((s->mask >> e & 1) && sheet_effect_table[e]->sheet->bonds) limit[e] = momentum;
     if (s->bending_bound > 0) limit[SHEET_EFFECT_bending] = 1 / s->bending_bound;
@@ -187,15 +209,18 @@ static void reset_results(sheet *s) {
 }
 
 static status reduce_results(sheet *s, double dt, sheet_fault *fault, report *r) {
+    real fastest = 0;
     s->stiffening = 1;
     for (int32_t g = 0; g < s->group_count; g++) {
         const group_result *result = &s->results[g];
+        if (result->fastest > fastest) fastest = result->fastest;
         s->stiffening = fmax(s->stiffening, (double)result->stiffening);
         s->grip_work += result->grip_work;
         s->broken_since += result->broken;
         for (int c = 0; c < 3; c++) s->grip_impulse[c] += result->grip_impulse[c];
         if (result->fault) return blame(s, result->fault - 1, dt, fault, r);
     }
+    s->speed = sqrt((double)fastest);
     return STATUS_OK;
 }
 

@@ -50,9 +50,12 @@ status sheet_save(const sheet *s, record_list *list, report *r) {
     void *data;
     double *scalars = NULL;
     uint8_t *active = NULL;
-    status code = record_add(list, "sheet/scalars", RECORD_F64, SCALARS, 1, NULL, (void **)&scalars, r);
+    double *speed = NULL;
+    status code = record_add(list, "sheet/speed", RECORD_F64, 1, 1, NULL, (void **)&speed, r);
+    if (code == STATUS_OK) code = record_add(list, "sheet/scalars", RECORD_F64, SCALARS, 1, NULL, (void **)&scalars, r);
     if (code == STATUS_OK) code = record_add(list, "sheet/active", RECORD_U8, SHEET_BOUNDARIES, 1, NULL, (void **)&active, r);
     if (code != STATUS_OK) return code;
+    *speed = s->speed;
     memcpy(scalars, (double[]){s->grip_work, s->grip_impulse[0], s->grip_impulse[1], s->grip_impulse[2], s->diffused_until, s->stiffening},
            SCALARS * sizeof *scalars);
     for (int b = 0; b < SHEET_BOUNDARIES; b++) active[b] = s->was_active[b];
@@ -69,7 +72,9 @@ status sheet_restore(sheet *s, const record_list *list, report *r) {
     double *scalars;
     uint8_t *active;
     void *data;
-    status code = record_require(list, "sheet/scalars", RECORD_F64, SCALARS, 1, (void **)&scalars, r);
+    double *speed;
+    status code = record_require(list, "sheet/speed", RECORD_F64, 1, 1, (void **)&speed, r);
+    if (code == STATUS_OK) code = record_require(list, "sheet/scalars", RECORD_F64, SCALARS, 1, (void **)&scalars, r);
     if (code == STATUS_OK) code = record_require(list, "sheet/active", RECORD_U8, SHEET_BOUNDARIES, 1, (void **)&active, r);
     for (int i = 0; i < count && code == STATUS_OK; i++) {
         code = record_require(list, rows[i].name, rows[i].type, rows[i].count, rows[i].components, &data, r);
@@ -80,6 +85,7 @@ status sheet_restore(sheet *s, const record_list *list, report *r) {
     memcpy(s->grip_impulse, scalars + 1, sizeof s->grip_impulse);
     s->diffused_until = scalars[4];
     s->stiffening = scalars[5];
+    s->speed = *speed;
     s->broken_since = 1; /* contacts are listed anew */
     for (int b = 0; b < SHEET_BOUNDARIES; b++) s->was_active[b] = active[b];
     return STATUS_OK;

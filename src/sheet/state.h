@@ -77,6 +77,7 @@ typedef struct group_result {
     real stiffening; /* largest stiffness of a bond over c */
     int32_t fault;   /* index of the first bad particle + 1 */
     int32_t broken;  /* bonds that broke, counted from both ends */
+    real fastest;    /* largest square of a speed */
     double grip_work, grip_impulse[3];
 } group_result;
 
@@ -92,6 +93,7 @@ struct sheet {
     struct contact_list *contacts; /* effects/self_contact.c; NULL unless it is on */
     int64_t broken_since;  /* bonds broken since contacts were last listed */
     double stiffening;
+    double speed; /* the largest of a particle in the last step */
 
     int64_t count;
     int32_t pack_count, group_count;

@@ -20,5 +20,5 @@ return s.scene {
   grips  = v ~= "uniform" and { grip(-1), grip(1) } or nil,
   expect = v == "grips" and { energy_gain = 0.02, speed_max = 150, determinant_min = 0.01 }
         or v == "tetrahedra" and { energy_gain = 0.02, deformation_end = { 8, 30 }, determinant_min = 0.01 }
-        or { energy_gain = 0.02, momentum_drift = 1e-4, deformation_max = { 1.5, 30 }, determinant_min = 0.01 },
+        or { energy_gain = 0.02, momentum_drift = 1e-4, deformation_max = { 1.5, 30 } },
 }

@@ -18,6 +18,21 @@ void engine_share_boundaries(const simulation *s) {
     for (int i = 0; i < s->scene->grip_count + s->scene->collider_count; i++) to[i].motion = from[i].motion;
 }
 
+/* What a particle may go in a step: less than a cell, or half a sheet's spacing. */
+static double finest_way(const simulation *s) {
+    double way = s->solid ? s->plan.dx : HUGE_VAL;
+    if (s->solid && s->plan.tetrahedra) way = s->particles.spacing;
+    return s->sheet ? fmin(way, 0.45 * s->sheet_points.spacing) : way;
+}
+
+/* Waves and speeds say nothing of what gravity is about to set in motion: from rest the way is |g| Δt², here a quarter of what is allowed. */
+static void limit_gravity(const simulation *s, double limit[EFFECT_LIMIT]) {
+    int gravity = effect_index("gravity");
+    const double *g = s->scene->effects[gravity].value[0];
+    double pull = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]), way = s->scene->cfl * finest_way(s);
+    if (s->scene->effects[gravity].on && pull > 0) limit[gravity] = 0.5 * sqrt(way / pull);
+}
+
 void engine_limits(const simulation *s, double limit[EFFECT_LIMIT]) {
     for (int e = 0; e < EFFECT_LIMIT; e++) limit[e] = HUGE_VAL;
     if (s->solid) s->engine->limits(s->solid, limit);
@@ -27,6 +42,11 @@ void engine_limits(const simulation *s, double limit[EFFECT_LIMIT]) {
         const effect *table = s->plan.effects[e];
         if (strcmp(table->name, "elastic") == 0 || effect_supplies(table, SHEET_ELASTICITY)) limit[e] *= s->scene->cfl;
     }
+    limit_gravity(s, limit);
+}
+
+double engine_boundary_limit(const simulation *s, double speed) {
+    return speed > 0 ? s->scene->cfl * finest_way(s) / speed : HUGE_VAL;
 }
 
 status engine_step(simulation *s, double dt, report *r) {

@@ -25,7 +25,7 @@ struct simulation {
     double time;
     double initial_energy;
     bool has_initial_energy;
-    bool warned_fixed, warned_damage;
+    bool warned_fixed, warned_damage, warned_cfl;
     char warning[256];
 };
 
@@ -35,6 +35,8 @@ rigid_boundary *engine_boundaries(const simulation *s);
 void engine_share_boundaries(const simulation *s);
 /* By index in the catalogue, the scene's cfl included. */
 void engine_limits(const simulation *s, double limit[EFFECT_LIMIT]);
+/* The step in which a grip or collider of that speed moves material less than a cell. */
+double engine_boundary_limit(const simulation *s, double speed);
 status engine_step(simulation *s, double dt, report *r);
 status engine_begin_frame(simulation *s, report *r);
 void engine_end_frame(simulation *s);

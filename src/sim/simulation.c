@@ -132,6 +132,26 @@ static status create_engines(simulation *s, int threads, report *r) {
     return STATUS_OK;
 }
 
+/* Whether all of it is where it may be; asked between frames. */
+static status check_domain(const simulation *s, report *r) {
+    const double *low = s->scene->domain_minimum, *high = s->scene->domain_maximum;
+    bool bounded = false;
+    for (int c = 0; c < 3; c++) bounded = bounded || isfinite(low[c]) || isfinite(high[c]);
+    if (!bounded) return STATUS_OK;
+    size_t bytes = (size_t)s->count * 3 * sizeof(double);
+    double *x = memory_allocate(bytes);
+    if (!x) return report_set(r, STATUS_SYSTEM, "out of memory for the places of %lld particles", (long long)s->count);
+    simulation_read(s, "position", x);
+    int64_t out = 0;
+    while (out < 3 * s->count && x[out] >= low[out % 3] && x[out] <= high[out % 3]) out++;
+    status code = STATUS_OK;
+    if (out < 3 * s->count)
+        code = report_set(r, s->frame > 0 ? STATUS_DIVERGED : STATUS_INPUT, "frame %lld, t = %.6g: particle %lld is outside of the domain: %c = %.6g, from %.6g to %.6g",
+                          (long long)s->frame, s->time, (long long)(out / 3), (char)('x' + out % 3), x[out], low[out % 3], high[out % 3]);
+    memory_free(x, bytes);
+    return code;
+}
+
 status simulation_create(const scene *definition, const simulation_options *options, simulation **out, report *r) {
     *out = NULL;
     const solid_engine *engine = (scene_is_tetrahedra(definition) ? solid_tetra_find : solid_engine_find)(options->precision, options->simd);
@@ -154,6 +174,7 @@ status simulation_create(const scene *definition, const simulation_options *opti
     s->plan.sheet = definition->sheet_count > 0;
     int threads = options->threads > 0 ? options->threads : processor_count();
     status code = create_engines(s, threads, r);
+    if (code == STATUS_OK) code = check_domain(s, r);
     if (code != STATUS_OK) {
         simulation_destroy(s);
         return code;
@@ -224,6 +245,19 @@ static status drive_boundaries(simulation *s, double dt, report *r) {
     return STATUS_OK;
 }
 
+/* How fast grips and colliders go at a time, spin left out: it is a speed only with a distance. */
+static status boundary_speed(const simulation *s, double time, double *most, report *r) {
+    for (int i = 0; i < s->scene->grip_count + s->scene->collider_count; i++) {
+        boundary_source from = source_of(s->scene, i);
+        double v[6] = {0};
+        if (from.velocity->outputs == 0 || time < from.start || time >= from.stop) continue;
+        status code = scene_function_evaluate(from.velocity, &time, 1, v, r);
+        if (code != STATUS_OK) return code;
+        *most = fmax(*most, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+    }
+    return STATUS_OK;
+}
+
 static void advance_boundaries(simulation *s, double dt) {
     rigid_boundary *boundaries = engine_boundaries(s);
     for (int i = 0; i < s->scene->grip_count + s->scene->collider_count; i++)
@@ -249,12 +283,18 @@ static status one_step(simulation *s, double dt, report *r) {
     return STATUS_OK;
 }
 
+static const double steady_cfl = 0.8; /* pic, rpic and flip: measured on a ringing block, scenes/stress/cfl.lua */
+
 /* Says once what a user would want to know of the time step. */
 static void warn_of_limits(simulation *s, double dt, const double limits[EFFECT_LIMIT], int which, double least) {
     const char *name = which >= 0 ? s->plan.effects[which]->name : "";
     if (s->scene->dt > 0 && dt > least * (1 + 1e-9) && !s->warned_fixed) {
         s->warned_fixed = true;
         snprintf(s->warning, sizeof s->warning, "dt %.4g exceeds the limit %.4g of the effect '%s' at t = %.4g", dt, least, name, s->time);
+    }
+    if (s->solid && s->scene->dt == 0 && !s->plan.tetrahedra && s->scene->transfer != TRANSFER_APIC && s->scene->cfl > steady_cfl && !s->warned_cfl) {
+        s->warned_cfl = true;
+        snprintf(s->warning, sizeof s->warning, "cfl %.3g is too long for this transfer, which carries no whole affine velocity: above %.2g noise may grow", s->scene->cfl, steady_cfl);
     }
     int momentum = effect_index("elastic"), damage = effect_index("damage");
     if (s->solid && !s->warned_damage && limits[damage] < 0.05 * limits[momentum]) {
@@ -270,7 +310,14 @@ static void warn_of_limits(simulation *s, double dt, const double limits[EFFECT_
 static status choose_step(simulation *s, double left, int64_t *steps_left, double *dt, report *r) {
     double limits[EFFECT_LIMIT];
     int which;
-    double least = smallest_limit(s, limits, &which);
+    double least = smallest_limit(s, limits, &which), driven = 0;
+    /* At both ends of the step that would be: a motion may begin within it. */
+    status code = boundary_speed(s, s->time, &driven, r);
+    if (code == STATUS_OK) code = boundary_speed(s, s->time + fmin(least, left), &driven, r);
+    if (code != STATUS_OK) return code;
+    int boundary = effect_index("boundary");
+    limits[boundary] = engine_boundary_limit(s, driven);
+    if (limits[boundary] < least) least = limits[boundary], which = boundary;
     if (s->scene->dt > 0) {
         if (*steps_left == 0) *steps_left = (int64_t)ceil(left / s->scene->dt - 1e-9);
         *dt = left / (double)*steps_left;
@@ -312,7 +359,7 @@ status simulation_advance(simulation *s, const atomic_int *abandon, report *r) {
     s->frame++;
     s->time = end; /* frames sit at exact multiples, not at sums of steps */
     engine_end_frame(s);
-    return STATUS_OK;
+    return check_domain(s, r);
 }
 
 int64_t simulation_frame(const simulation *s) {

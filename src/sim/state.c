@@ -100,7 +100,7 @@ status simulation_save(const simulation *s, record_list *list, report *r) {
     if (code == STATUS_OK) code = record_add(list, "sim/reals", RECORD_F64, CLOCK_REALS, 1, NULL, (void **)&reals, r);
     if (code == STATUS_OK) code = record_add(list, "sim/motions", RECORD_F64, boundaries, MOTION_REALS, NULL, (void **)&motions, r);
     if (code != STATUS_OK) return code;
-    memcpy(integers, (int64_t[]){s->frame, s->steps, s->has_initial_energy, s->warned_fixed + 2 * s->warned_damage}, CLOCK_INTEGERS * sizeof *integers);
+    memcpy(integers, (int64_t[]){s->frame, s->steps, s->has_initial_energy, s->warned_fixed + 2 * s->warned_damage + 4 * s->warned_cfl}, CLOCK_INTEGERS * sizeof *integers);
     memcpy(reals, (double[]){s->time, s->dt_min, s->dt_max, s->initial_energy}, CLOCK_REALS * sizeof *reals);
     const rigid_boundary *b = engine_boundaries(s);
     for (int i = 0; i < boundaries; i++) {
@@ -124,6 +124,7 @@ status simulation_restore(simulation *s, const record_list *list, report *r) {
     s->has_initial_energy = integers[2] != 0;
     s->warned_fixed = integers[3] & 1;
     s->warned_damage = integers[3] >> 1 & 1;
+    s->warned_cfl = integers[3] >> 2 & 1;
     s->time = reals[0];
     s->dt_min = reals[1];
     s->dt_max = reals[2];

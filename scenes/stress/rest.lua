@@ -1,9 +1,9 @@
--- Rest: a block lies on a floor for very many steps, without damping. Nothing may grow.
+-- Rest: a block lies on a floor for a hundred thousand steps, without damping. Nothing may grow.
 --
 --   apic   after a drop of a tenth of its height
 --   flip   the same with FLIP of ratio 1, which damps nothing: noise in what the grid does not see may not grow into motion
 local s = require "sunder"
-local p = s.params { duration = 20, fps = 1, dx = 0.1, variant = s.choice { "apic", "flip" } }
+local p = s.params { duration = 140, fps = 0.1, dx = 0.1, variant = s.choice { "apic", "flip" } }
 
 return s.scene {
   title    = "Rest", gravity = { 0, -10, 0 }, transfer = p.variant, transfer_ratio = p.variant == "flip" and 1 or 0,

@@ -259,6 +259,16 @@ static int parse(stress_command *c, int count, char **arguments) {
     return code;
 }
 
+/* "case  NAME  damage,elastic  what it is" */
+static void print_about(const stress_case *one) {
+    int count;
+    const effect *const *all = effect_catalogue(&count);
+    printf("case  %s  ", one->name);
+    for (int e = 0, shown = 0; e < count; e++)
+        if (one->effects >> e & 1) printf("%s%s", shown++ ? "," : "", all[e]->name);
+    printf("  %s\n", one->remark[0] ? one->remark : one->title);
+}
+
 /* The ledger's verdicts of before, printed as lines: what the workbench reads when it opens the screen. */
 static int show_last(stress_command *c) {
     report r;
@@ -268,6 +278,7 @@ static int show_last(stress_command *c) {
     ledger_close(l);
     if (code == STATUS_OK && c->json) code = print_json(c, &r);
     for (int i = 0; i < c->run_count && code == STATUS_OK && !c->json; i++) print_line(stdout, c, i);
+    for (int i = 0; i < c->suite.count && code == STATUS_OK && !c->json && c->verbose; i++) print_about(&c->suite.cases[i]);
     return code == STATUS_OK ? 0 : cli_fail(&r);
 }
 

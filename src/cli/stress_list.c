@@ -21,10 +21,13 @@ static void print_effect(const stress_suite *s, const effect *e, int index, bool
     puts(markdown ? " |" : "");
 }
 
-static void print_case(const stress_case *c, bool markdown) {
+/* What a file is about stands once, beside its first case. */
+static void print_case(const stress_case *c, const stress_case *before, bool markdown) {
     int count;
     const effect *const *all = effect_catalogue(&count);
-    printf(markdown ? "| `%s` | %s | " : "  %-28s %s\n%32s", c->name, c->remark[0] ? c->remark : c->title, "");
+    bool first = !before || strcmp(before->scene, c->scene) != 0;
+    const char *about = !first ? "" : c->remark[0] ? c->remark : c->title;
+    printf(markdown ? "| `%s` | %s | " : "  %-28s %s\n%32s", c->name, about, "");
     for (int e = 0, shown = 0; e < count; e++)
         if (c->effects >> e & 1) printf("%s%s", shown++ ? ", " : "", all[e]->name);
     if (c->hard.stop[0]) printf(markdown ? " | stops: \"%s\"" : "; stops: \"%s\"", c->hard.stop);
@@ -88,7 +91,7 @@ int stress_print_list(const stress_suite *s, bool json, bool markdown) {
         missing += stress_coverage(s, e) == 0;
     }
     puts(markdown ? "\n## Cases\n\n| case | | effects | held against |\n|---|---|---|---|" : "\nCases");
-    for (int i = 0; i < s->count; i++) print_case(&s->cases[i], markdown);
+    for (int i = 0; i < s->count; i++) print_case(&s->cases[i], i > 0 ? &s->cases[i - 1] : NULL, markdown);
     if (missing > 0) fprintf(stderr, "sunder: %d effects have no hard case: write scenes/stress/NAME.lua\n", missing);
     return missing > 0;
 }

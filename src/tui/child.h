@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <sys/types.h>
 
-enum { CHILD_LINE = 1024 };
+enum { CHILD_LINE = 2048 };
 
 typedef struct child {
     pid_t pid; /* 0: none */

@@ -38,7 +38,11 @@ enum { VEC_LANES = VEC_BYTES / (int)sizeof(real) };
 typedef real vec __attribute__((vector_size(VEC_BYTES)));
 typedef real_bits vec_mask __attribute__((vector_size(VEC_BYTES))); /* all ones where true */
 
+#ifdef SUNDER_SANITIZED
+#define SIMD_INLINE static inline /* thousands of copies of a sanitizer's checks take minutes a file to compile */
+#else
 #define SIMD_INLINE static inline __attribute__((always_inline))
+#endif
 
 SIMD_INLINE vec vec_load(const real *from) {
     vec v;

@@ -5,11 +5,12 @@
  * next. When that is done it takes chunks from the ends of others' stretches. */
 #include "base/threads.h"
 
+#include "base/clock.h"
+
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
 #include <stdbool.h>
-#include <time.h>
 
 enum { WORKERS_LIMIT = 256, SPINS = 2000, APART = 4096 /* bytes: prefetchers of two processors that meet in a page slow both down */ };
 
@@ -81,18 +82,12 @@ static void take_chunks(int worker) {
         }
 }
 
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* Passes follow each other within some 100 µs, and to be woken takes as long: a worker stays awake for a while, lending its processor to whoever
  * wants it. Whether there is a generation other than `seen` by then. */
 static bool look_out(uint64_t seen) {
     for (int i = 0; i < SPINS; i++, relax())
         if (atomic_load(&generation) != seen) return true;
-    for (double until = now() + AWAKE; now() < until; sched_yield())
+    for (double until = clock_seconds() + AWAKE; clock_seconds() < until; sched_yield())
         if (atomic_load(&generation) != seen) return true;
     return false;
 }

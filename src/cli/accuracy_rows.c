@@ -2,6 +2,7 @@
 #include "cli/accuracy_print.h"
 
 #include "base/json.h"
+#include "cli/cli.h"
 
 #include <math.h>
 
@@ -164,8 +165,5 @@ status accuracy_print_json(const accuracy_study *s, report *r) {
     json_notes(&w, s, "notes", 0, advice);
     json_notes(&w, s, "advice", advice, s->note_count);
     json_object_end(&w);
-    status code = json_finish(&w, r);
-    if (code == STATUS_OK) puts(w.text);
-    json_free(&w);
-    return code;
+    return cli_print_json(&w, r);
 }

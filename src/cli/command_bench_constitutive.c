@@ -97,10 +97,7 @@ static int print_json(const constitutive_result *f32, const constitutive_result 
     json_object_end(&w);
     json_member_number(&w, "paper_ratio", PAPER_RATIO);
     json_object_end(&w);
-    status code = json_finish(&w, &r);
-    if (code == STATUS_OK) puts(w.text);
-    json_free(&w);
-    return code == STATUS_OK ? 0 : cli_fail(&r);
+    return cli_print_json(&w, &r) == STATUS_OK ? 0 : cli_fail(&r);
 }
 
 int command_bench_constitutive(int count, char **arguments) {

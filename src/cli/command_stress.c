@@ -185,10 +185,7 @@ static status print_json(const stress_command *c, report *r) {
     for (int i = 0; i < c->run_count; i++) write_run(&w, c, &c->runs[i]);
     json_array_end(&w);
     json_object_end(&w);
-    status code = json_finish(&w, r);
-    if (code == STATUS_OK) puts(w.text);
-    json_free(&w);
-    return code;
+    return cli_print_json(&w, r);
 }
 
 /* ---- the command -------------------------------------------------------------------------------------------------- */

@@ -73,10 +73,7 @@ static int print_json(const stress_suite *s) {
     }
     json_array_end(&w);
     json_object_end(&w);
-    status code = json_finish(&w, &r);
-    if (code == STATUS_OK) puts(w.text);
-    json_free(&w);
-    return code != STATUS_OK ? cli_fail(&r) : missing > 0;
+    return cli_print_json(&w, &r) != STATUS_OK ? cli_fail(&r) : missing > 0;
 }
 
 int stress_print_list(const stress_suite *s, bool json, bool markdown) {

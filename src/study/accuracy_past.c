@@ -1,6 +1,7 @@
 /* What the ledger has of a study: runs of earlier ones, and how often short runs were timed. */
 #include "study/accuracy.h"
 
+#include "base/clock.h"
 #include "session/session.h"
 #include "store/frames.h"
 
@@ -9,7 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/utsname.h>
-#include <time.h>
 
 static const double LONG_ENOUGH = 1; /* seconds of steps that are timed in all */
 enum { TIMED_MOST = 5 };
@@ -76,12 +76,6 @@ status accuracy_mark_together(accuracy_study *s, const accuracy_run *run, report
     return remember(s, run, "together", r);
 }
 
-static double seconds_now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* The steps of the whole run, without measures and files. */
 static status time_steps(const accuracy_study *s, const accuracy_run *run, script *from, double *seconds, report *r) {
     simulation *state = NULL;
@@ -90,9 +84,9 @@ static status time_steps(const accuracy_study *s, const accuracy_run *run, scrip
     status code = simulation_create(script_scene(from), &engine, &state, r);
     *seconds = 0;
     for (int64_t frame = 0; frame < s->frames && code == STATUS_OK && !study_stopped(); frame++) {
-        double start = seconds_now();
+        double start = clock_seconds();
         code = simulation_advance(state, NULL, r);
-        *seconds += seconds_now() - start;
+        *seconds += clock_seconds() - start;
     }
     simulation_destroy(state);
     return code;

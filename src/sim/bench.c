@@ -38,19 +38,14 @@ int bench_cases(const bench_case **cases) {
 
 bench_options bench_options_default(void) {
     return (bench_options){.which = &all_cases[0], .precision = 32, .threads = 1, .particles = 50000, .simd = "auto",
-                           .seconds = 0.3, .limit = 8, .repeat = 3};
+                           .seconds = 0.3, .limit = 8, .repeat = 5};
 }
 
 /* ---- the scene --------------------------------------------------------------------------------------------------- */
 
-/* The bar's motion at the start: it stretches along x, thins as it does, and drifts along y. */
-typedef struct bar_motion {
-    double rate, drift;
-} bar_motion;
-
 static status bar_velocity(void *context, const double *x, int inputs, double *v, int outputs, report *r) {
     (void)inputs, (void)outputs, (void)r;
-    const bar_motion *m = context;
+    const bench_bar *m = context;
     v[0] = m->rate * x[0];
     v[1] = m->drift - POISSON * m->rate * x[1];
     v[2] = -POISSON * m->rate * x[2];
@@ -103,13 +98,13 @@ static void define_material(scene *s, const bench_case *c) {
 }
 
 /* Thin, one layer of nodes: what is held does not stretch, and early outs would take it. */
-static void add_grip(scene *s, double side, const bar_motion *m) {
+static void add_grip(scene *s, double side, const bench_bar *m) {
     double inner = 1 - 0.5 * s->dx, low[3] = {side < 0 ? -2 : inner, -2, -2}, high[3] = {side < 0 ? -inner : 2, 2, 2};
     s->grips[s->grip_count++] = (scene_grip){.shape = shape_box(s->memory, low, high), .stop = HUGE_VAL,
                                              .velocity = {.outputs = 3, .constant = {side * m->rate, m->drift, 0}}};
 }
 
-static scene *make_scene(const bench_options *o, bar_motion *m) {
+static scene *make_scene(const bench_options *o, bench_bar *m) {
     scene *s = scene_create();
     if (!s) return NULL;
     const bench_case *c = o->which;
@@ -122,7 +117,8 @@ static scene *make_scene(const bench_options *o, bar_motion *m) {
     s->kernel = o->kernel;
     s->laplacian = o->laplacian;
     define_material(s, c);
-    *m = (bar_motion){.rate = STRAIN_PER_FRAME * s->fps, .drift = DRIFT_PER_STEP * FRAME_STEPS * s->dx * s->fps};
+    m->rate = STRAIN_PER_FRAME * s->fps;
+    m->drift = DRIFT_PER_STEP * FRAME_STEPS * s->dx * s->fps;
     s->bodies[s->body_count++] = (scene_body){
         .name = "bar", .shape = shape_box(s->memory, low, high), .sampling = SAMPLING_JITTERED,
         .velocity = {.outputs = 3, .call = bar_velocity, .context = m}};
@@ -343,17 +339,26 @@ static status measure_case(simulation *sim, const scene *s, const bench_options 
     return STATUS_OK;
 }
 
-status bench_step(const bench_options *o, bench_result *out, report *r) {
-    bar_motion motion;
-    memset(out, 0, sizeof *out);
-    scene *s = make_scene(o, &motion);
-    if (!s) return report_set(r, STATUS_SYSTEM, "out of memory for the benchmark's scene");
-    simulation *sim = NULL;
+status bench_bar_create(const bench_options *o, bench_bar *bar, report *r) {
+    *bar = (bench_bar){0};
+    bar->scene = make_scene(o, bar);
+    if (!bar->scene) return report_set(r, STATUS_SYSTEM, "out of memory for the benchmark's scene");
     simulation_options options = {.threads = o->threads, .precision = o->precision, .simd = o->simd};
-    status code = scene_validate(s, r);
-    if (code == STATUS_OK) code = simulation_create(s, &options, &sim, r);
-    if (code == STATUS_OK) code = measure_case(sim, s, o, out, r);
-    simulation_destroy(sim);
-    scene_destroy(s);
+    status code = scene_validate(bar->scene, r);
+    return code == STATUS_OK ? simulation_create(bar->scene, &options, &bar->simulation, r) : code;
+}
+
+void bench_bar_destroy(bench_bar *bar) {
+    simulation_destroy(bar->simulation);
+    if (bar->scene) scene_destroy(bar->scene);
+    *bar = (bench_bar){0};
+}
+
+status bench_step(const bench_options *o, bench_result *out, report *r) {
+    bench_bar bar;
+    memset(out, 0, sizeof *out);
+    status code = bench_bar_create(o, &bar, r);
+    if (code == STATUS_OK) code = measure_case(bar.simulation, bar.scene, o, out, r);
+    bench_bar_destroy(&bar);
     return code;
 }

@@ -54,4 +54,27 @@ typedef struct bench_result {
  * with under 2 % of its particles above the critical stress. */
 status bench_step(const bench_options *o, bench_result *out, report *r);
 
+/* A case, ready to run. */
+typedef struct bench_bar {
+    struct scene *scene;
+    simulation *simulation;
+    double rate, drift; /* its motion at the start: it stretches along x, thins as it does, and drifts along y */
+} bench_bar;
+
+/* bench_bar_destroy also takes one that could not be made, or is all 0. Errors: memory. */
+status bench_bar_create(const bench_options *o, bench_bar *bar, report *r);
+void bench_bar_destroy(bench_bar *bar);
+
+typedef struct bench_scaling {
+    int64_t particles;
+    int rounds;
+    double ratio;        /* how many times faster a simulation is on o->threads threads than on one: the rounds' median */
+    double copies_ratio; /* what as many independent simulations on one thread each do together, likewise: what this machine's processors, caches and
+                          * memory let as many threads do at best */
+} bench_scaling;
+
+/* Holds o->threads threads (at most BENCH_COPIES) against one and against copies, a frame each in turns. Errors: memory, threads; a simulation that fails. */
+enum { BENCH_COPIES = 64 };
+status bench_scale(const bench_options *o, bench_scaling *out, report *r);
+
 #endif

@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 
+#include <math.h>
 #include <string.h>
 #include <zlib.h>
 
@@ -12,7 +13,9 @@ enum {
     WORTHWHILE = 1 << 14, /* bytes: below, a chunk index costs what compression saves */
     CHUNK_BYTES = 1 << 17,
     SAMPLE_BYTES = 1 << 13,
+    SAMPLES = 2048, /* bytes of a plane that are counted */
 };
+static const double NOISE_BITS = 7;
 
 /* One chunk on its way to the file. `block` is one allocation that holds the three buffers. */
 typedef struct packer {
@@ -23,6 +26,8 @@ typedef struct packer {
     unsigned char *mixed;  /* [chunk_bytes] shuffled */
     unsigned char *packed; /* [chunk_bytes]: what does not fit is not worth packing */
     size_t element;        /* bytes of one element */
+    int level, strategy;   /* of the whole array */
+    bool by_plane;         /* each plane's worth is looked at */
     z_stream stream;
 } packer;
 
@@ -45,36 +50,52 @@ static void shuffle(unsigned char *to, const char *from, size_t elements, size_t
     }
 }
 
-/* Deflates `bytes` shuffled bytes; 0 when the result would not fit (it is no smaller than what went in). */
+/* Whether Huffman's code would save less than an eighth: a plane of low digits is nearly noise, and coding it takes most of the time for next to nothing. */
+static bool is_noise(const unsigned char *plane, size_t bytes) {
+    int count[256] = {0}, taken = 0;
+    for (size_t i = 0; i < bytes; i += bytes / SAMPLES + 1, taken++) count[plane[i]]++;
+    double bits = 0;
+    for (int b = 0; b < 256; b++)
+        if (count[b]) bits -= count[b] * log2((double)count[b] / taken);
+    return taken >= SAMPLES / 2 && bits > NOISE_BITS * taken;
+}
+
+/* Deflates `bytes` shuffled bytes, planes of noise as they are; 0 when the result would not fit (it is no smaller than what went in). */
 static size_t pack(packer *p, size_t bytes) {
     deflateReset(&p->stream);
     p->stream.next_in = p->mixed;
-    p->stream.avail_in = (uInt)bytes;
+    p->stream.avail_in = 0;
     p->stream.next_out = p->packed;
     p->stream.avail_out = (uInt)bytes;
-    return deflate(&p->stream, Z_FINISH) == Z_STREAM_END ? p->stream.total_out : 0;
-}
-
-static bool use_strategy(packer *p, int level, int strategy) {
-    return deflateReset(&p->stream) == Z_OK && deflateParams(&p->stream, level, strategy) == Z_OK;
+    int planes = p->by_plane ? (int)p->element : 1, state = Z_OK;
+    for (int k = 0; k < planes && state == Z_OK; k++) {
+        size_t plane = bytes / (size_t)planes;
+        int level = planes > 1 && is_noise(p->mixed + plane * (size_t)k, plane) ? 0 : p->level;
+        state = deflateParams(&p->stream, level, p->strategy); /* what has been put in so far is packed as it was to be */
+        p->stream.avail_in = (uInt)plane;
+        if (state == Z_OK) state = deflate(&p->stream, k + 1 < planes ? Z_NO_FLUSH : Z_FINISH);
+    }
+    return state == Z_STREAM_END ? p->stream.total_out : 0;
 }
 
 /* Tries both strategies on a piece from the middle of the array and keeps the one that packs it better. */
-static bool choose_strategy(packer *p, const hdf_array *array, int level) {
+static void choose_strategy(packer *p, const hdf_array *array) {
     size_t total = row_bytes(array) * (size_t)array->count;
     size_t bytes = (size_t)SAMPLE_BYTES < p->chunk_bytes ? (size_t)SAMPLE_BYTES : p->chunk_bytes;
     bytes -= bytes % p->element;
     size_t start = (total - bytes) / 2;
     shuffle(p->mixed, (const char *)array->data + start - start % p->element, bytes / p->element, p->element);
+    p->strategy = Z_DEFAULT_STRATEGY;
     size_t searched = pack(p, bytes);
-    if (!use_strategy(p, level, Z_RLE)) return false;
+    p->strategy = Z_RLE;
     size_t runs = pack(p, bytes);
     bool repeats = searched > 0 && (runs == 0 || searched < runs - runs / 8);
-    return !repeats || use_strategy(p, level, Z_DEFAULT_STRATEGY);
+    if (repeats) p->strategy = Z_DEFAULT_STRATEGY;
+    else p->by_plane = p->element > 1;
 }
 
 static status packer_begin(packer *p, const char *path, const hdf_array *array, int level, report *r) {
-    *p = (packer){.element = record_type_size(array->type)};
+    *p = (packer){.element = record_type_size(array->type), .level = level};
     p->chunk_bytes = (size_t)hdf_chunk_rows(array) * row_bytes(array);
     p->block_bytes = 3 * p->chunk_bytes;
     p->block = memory_allocate(p->block_bytes);
@@ -82,8 +103,8 @@ static status packer_begin(packer *p, const char *path, const hdf_array *array, 
         p->padded = p->block;
         p->mixed = (unsigned char *)p->block + p->chunk_bytes;
         p->packed = (unsigned char *)p->block + 2 * p->chunk_bytes;
-        if (choose_strategy(p, array, level)) return STATUS_OK;
-        deflateEnd(&p->stream);
+        choose_strategy(p, array);
+        return STATUS_OK;
     }
     memory_free(p->block, p->block_bytes);
     return report_set(r, STATUS_SYSTEM, "%s: out of memory to compress '%s'", path, array->name);

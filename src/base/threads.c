@@ -38,6 +38,8 @@ static _Alignas(APART) atomic_int inside;
 static _Alignas(APART) atomic_int open_for_work;
 static _Atomic uint64_t generation;
 static stretch stretches[WORKERS_LIMIT + 1];
+static atomic_int guests; /* threads that compute beside the pool's */
+static int processors;    /* guarded by owner */
 
 static void relax(void) {
 #if defined(__x86_64__)
@@ -117,6 +119,7 @@ static void *worker_main(void *argument) {
 
 /* A forked child has none of its parent's workers. */
 static void forget_workers(void) {
+    atomic_store(&guests, 0);
     worker_count = 0;
     sleepers = 0;
     atomic_store(&inside, 0);
@@ -165,37 +168,58 @@ static void work_together(const job *j) {
     pthread_mutex_unlock(&owner);
 }
 
-/* Another caller's job has the pool: this one runs alone, with the same result. */
-static bool enter_pool(int threads) {
-    if (threads > WORKERS_LIMIT || pthread_mutex_trylock(&owner) != 0) return false;
-    start_workers(threads);
-    return true;
+void parallel_make_room(void) {
+    atomic_fetch_add(&guests, 1);
+}
+
+void parallel_take_room(void) {
+    atomic_fetch_sub(&guests, 1);
+}
+
+/* How many threads there are processors for. More threads than processors that were asked for are the user's wish. */
+static int threads_with_room(int threads) {
+    if (processors == 0) processors = processor_count();
+    int most = threads < processors ? threads : processors, left = processors - atomic_load(&guests);
+    if (left >= most) return threads;
+    return left > 1 ? left : 1;
+}
+
+/* Returns how many threads to work with: 1 without the pool, which another caller's job may have; the result is the same. */
+static int enter_pool(int threads) {
+    if (threads <= 1 || threads > WORKERS_LIMIT || pthread_mutex_trylock(&owner) != 0) return 1;
+    int present = threads_with_room(threads);
+    if (present == 1) pthread_mutex_unlock(&owner);
+    else start_workers(threads);
+    return present;
 }
 
 void parallel_for(int threads, int64_t count, int64_t grain, void (*body)(void *context, int64_t i, int worker),
                   void *context) {
     int64_t chunks = (count + grain - 1) / grain;
-    if (threads <= 1 || chunks <= 1 || chunks > INT32_MAX || !enter_pool(threads)) {
+    int present = chunks > 1 && chunks <= INT32_MAX ? enter_pool(threads) : 1;
+    if (present == 1) {
         work_alone(count, body, context);
         return;
     }
-    for (int w = 0; w < threads; w++)
-        atomic_store_explicit(&stretches[w].left[0], pack_range(chunks * w / threads, chunks * (w + 1) / threads), memory_order_relaxed);
-    work_together(&(job){count, grain, threads, 1, body, context});
+    for (int w = 0; w < present; w++)
+        atomic_store_explicit(&stretches[w].left[0], pack_range(chunks * w / present, chunks * (w + 1) / present), memory_order_relaxed);
+    work_together(&(job){count, grain, present, 1, body, context});
 }
 
 void parallel_stages(int threads, int stages, const int32_t *bounds, void (*body)(void *context, int64_t i, int worker), void *context) {
     int32_t count = bounds[stages * (threads + 1) - 1];
-    if (threads <= 1 || count <= 1 || !enter_pool(threads)) {
+    int present = count > 1 ? enter_pool(threads) : 1;
+    if (present == 1) {
         work_alone(count, body, context);
         return;
     }
-    for (int w = 0; w < threads; w++)
+    for (int w = 0; w < present; w++)
         for (int stage = 0; stage < stages; stage++) {
-            const int32_t *at = bounds + stage * (threads + 1) + w;
-            atomic_store_explicit(&stretches[w].left[stage], pack_range(at[0], at[1]), memory_order_relaxed);
+            const int32_t *of_stage = bounds + stage * (threads + 1);
+            uint64_t range = pack_range(of_stage[threads * w / present], of_stage[threads * (w + 1) / present]);
+            atomic_store_explicit(&stretches[w].left[stage], range, memory_order_relaxed);
         }
-    work_together(&(job){count, 1, threads, stages, body, context});
+    work_together(&(job){count, 1, present, stages, body, context});
 }
 
 int processor_count(void) {

@@ -16,6 +16,11 @@ void parallel_for(int threads, int64_t count, int64_t grain, void (*body)(void *
 enum { PARALLEL_STAGES = 27 };
 void parallel_stages(int threads, int stages, const int32_t *bounds, void (*body)(void *context, int64_t i, int worker), void *context);
 
+/* The calling thread is going to compute for a while beside parallel loops, and has done so. Meanwhile these take one thread less where processors would
+ * be short: a worker that loses its processor in the midst of an item holds all others up. Results do not depend on it. */
+void parallel_make_room(void);
+void parallel_take_room(void);
+
 /* Passes the time of the `spins`th look at what another thread will have done soon; after many looks the processor is lent to others. */
 void thread_relax(int spins);
 

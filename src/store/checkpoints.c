@@ -4,6 +4,7 @@
 #include "store/frames.h"
 
 #include "base/compare.h"
+#include "base/threads.h"
 #include "store/files.h"
 #include "store/hdf.h"
 
@@ -147,10 +148,12 @@ status checkpoint_write(const char *folder, const frame_header *header, const re
     status s = checkpoint_path(path, folder, header->frame, r);
     if (!s) s = hdf_image_create(&image, path, image_bytes(records), SEAL, r);
     if (s) return s;
+    parallel_make_room(); /* what follows in memory takes as long as some steps */
     s = write_contents(image.file, path, header, records, r);
     if (!s) s = hdf_image_close(&image, r);
+    if (!s) make_seal(image.block, image.size - SEAL, XXH3_64bits(image.block + SEAL, image.size - SEAL));
+    parallel_take_room();
     if (!s) {
-        make_seal(image.block, image.size - SEAL, XXH3_64bits(image.block + SEAL, image.size - SEAL));
         s = file_write_whole(path, image.block, image.size, r);
         if (!s) file_forget(path);
     }

@@ -2,6 +2,7 @@
 #include "store/frames.h"
 
 #include "base/memory.h"
+#include "base/threads.h"
 #include "store/files.h"
 #include "store/hdf.h"
 #include "store/series.h"
@@ -119,6 +120,7 @@ static status write_file(const char *path, const frame_header *header, const rec
     hdf_image image;
     status s = hdf_image_create(&image, path, image_bytes(records), 0, r);
     if (s) return s;
+    parallel_make_room(); /* what follows in memory takes as long as some steps */
     if (set) {
         char source[64];
         snprintf(source, sizeof source, "../%06" PRId64 ".hdf", header->frame);
@@ -128,6 +130,7 @@ static status write_file(const char *path, const frame_header *header, const rec
         s = write_contents(image.file, path, header, records, deflate, r);
     }
     if (!s) s = hdf_image_close(&image, r);
+    parallel_take_room();
     char temporary[FILE_PATH];
     if (!s) s = file_write_beside(path, image.block, image.size, temporary, r);
     if (!s) s = file_commit(temporary, path, r);

@@ -137,10 +137,9 @@ SIMD_INLINE sym3v sym3v_scratch(real *base, int k, int part) {
                    vec_load(scratch_at(base, 6, k, 3, part)), vec_load(scratch_at(base, 6, k, 4, part)), vec_load(scratch_at(base, 6, k, 5, part))};
 }
 
-/* The largest eigenvalue, from above by at most 1 %: m + 2 p h, m the mean, 6 p² = |S − m I|², and h in [½, 1] the largest root of
- * 4h³ − 3h = det(S − m I)/(2p³). Three tangents bound the root, and Newton's steps come down to it without passing it. */
+/* The largest eigenvalue of a positive semi-definite tensor, from above by at most 1.4 %: m + 2 p h, m the mean, 6 p² = |S − m I|², and
+ * h = cos(acos(r)/3) with r = det(S − m I)/(2p³). h is concave: its tangents, at r = 1, 0, −0.6, −0.9 and −0.99, bound it from above. */
 SIMD_INLINE vec sym3v_largest(sym3v s) {
-    const vec one = vec_all(1);
     vec mean = (s.xx + s.yy + s.zz) * (real)(1.0 / 3);
     vec x = s.xx - mean, y = s.yy - mean, z = s.zz - mean;
     vec off = vec_fma(s.xy, s.xy, vec_fma(s.yz, s.yz, s.xz * s.xz));
@@ -149,13 +148,12 @@ SIMD_INLINE vec sym3v_largest(sym3v s) {
     x *= inverse, y *= inverse, z *= inverse;
     vec xy = s.xy * inverse, yz = s.yz * inverse, xz = s.xz * inverse;
     vec det = x * vec_fma(y, z, -(yz * yz)) - xy * vec_fma(xy, z, -(yz * xz)) + xz * vec_fma(xy, yz, -(y * xz));
-    vec r = vec_min(vec_max((real)0.5 * det, -one), one);
-    vec h = vec_min(vec_fma(r - 1, vec_all((real)(1.0 / 9)), one),
-                    vec_min(vec_fma(r, vec_all((real)(1.0 / 6)), vec_all((real)0.8660255)), vec_fma(r + (real)0.9, vec_all((real)0.59736), vec_all((real)0.62415))));
-    for (int i = 0; i < 2; i++) {
-        vec square = h * h;
-        h = vec_fma(8 * square, h, r) / vec_fma(vec_all(12), square, vec_all(-3));
-    }
+    vec r = vec_min(vec_max((real)0.5 * det, vec_all(-1)), vec_all(1));
+    vec h = vec_fma(vec_all((real)0.1111111), r, vec_all((real)0.8888891));
+    h = vec_min(h, vec_fma(vec_all((real)0.1666667), r, vec_all((real)0.8660256)));
+    h = vec_min(h, vec_fma(vec_all((real)0.2803679), r, vec_all((real)0.9079699)));
+    h = vec_min(h, vec_fma(vec_all((real)0.5975272), r, vec_all((real)1.1618449)));
+    h = vec_min(h, vec_fma(vec_all((real)1.9883659), r, vec_all((real)2.5087698)));
     return vec_fma(p + p, h, mean);
 }
 

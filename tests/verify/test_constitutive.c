@@ -222,7 +222,7 @@ static sym3v tensor_of(const double s[3], const double R[9]) {
     return (sym3v){vec_all(S[0]), vec_all(S[4]), vec_all(S[8]), vec_all(S[1]), vec_all(S[5]), vec_all(S[2])};
 }
 
-/* Any eigenvalues, two or three of them equal or nearly so: never below, and above by 1.2 % of the largest at most. */
+/* Any eigenvalues, two or three of them equal or nearly so: never below, and above by 1.4 % of the largest at most. */
 static void largest_eigenvalue_is_bounded_closely(void) {
     double least = HUGE_VAL, most = 0;
     for (uint64_t i = 0; i < 20000; i++) {
@@ -235,23 +235,23 @@ static void largest_eigenvalue_is_bounded_closely(void) {
         least = fmin(least, ratio), most = fmax(most, ratio);
     }
     CHECK(least >= 1 - 1e-12);
-    CHECK(most <= 1.012);
+    CHECK(most <= 1.014);
 }
 
 /* Fibres that cross at right angles stiffen different waves: at rest ρ0 c² = μ + λ + max(k1, k2), not their sum. */
 static void crossed_fibres_do_not_add_up(void) {
     material_point *p = fibred_point();
     double E = 3, nu = 0.3, mu = E / (2 * (1 + nu)), lambda = E * nu / ((1 + nu) * (1 - 2 * nu)) + mu;
-    CHECK_ROW("METHOD 3", "step limit's bound at rest, two families at right angles: ρ0 c² over its exact value", 1, point_wave(p) / (mu + lambda + 2 * mu), 0.012);
+    CHECK_ROW("METHOD 3", "step limit's bound at rest, two families at right angles: ρ0 c² over its exact value", 1, point_wave(p) / (mu + lambda + 2 * mu), 0.014);
     double R[9], F[9] = {0};
     for (uint64_t i = 0; i < 100; i++) {
         random_rotation(SEED, i, R);
         point_set(p, FIELD_DEFORMATION, R);
-        CHECK_NEAR(point_wave(p), mu + lambda + 2 * mu, 0.012 * (mu + lambda + 2 * mu));
+        CHECK_NEAR(point_wave(p), mu + lambda + 2 * mu, 0.014 * (mu + lambda + 2 * mu));
     }
     for (int c = 0; c < 3; c++) F[4 * c] = 2; /* twice as long: b and both families by 4, J² by 64 */
     point_set(p, FIELD_DEFORMATION, F);
-    CHECK_NEAR(point_wave(p), 4 * (mu + 2 * mu) + 64 * lambda, 0.012 * (12 * mu + 64 * lambda));
+    CHECK_NEAR(point_wave(p), 4 * (mu + 2 * mu) + 64 * lambda, 0.014 * (12 * mu + 64 * lambda));
     free(p);
 }
 

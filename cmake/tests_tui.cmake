@@ -3,6 +3,8 @@ sunder_test(view ${CMAKE_SOURCE_DIR}/tests/unit/test_view.c sunder_view)
 sunder_test(view_scale ${CMAKE_SOURCE_DIR}/tests/unit/test_view_scale.c sunder_view)
 sunder_test(typing ${CMAKE_SOURCE_DIR}/tests/unit/test_typing.c sunder_tui)
 sunder_test(knob_panel ${CMAKE_SOURCE_DIR}/tests/unit/test_knob_panel.c sunder_tui sunder_sim)
+sunder_test(pace ${CMAKE_SOURCE_DIR}/tests/unit/test_pace.c sunder_tui sunder_sim)
+sunder_test(frame_reader ${CMAKE_SOURCE_DIR}/tests/store/test_frame_reader.c sunder_tui sunder_session)
 
 add_executable(demo_tui ${CMAKE_SOURCE_DIR}/tests/tui/demo_tui.c ${CMAKE_SOURCE_DIR}/tests/tui/fake_session.c)
 target_include_directories(demo_tui PRIVATE ${CMAKE_SOURCE_DIR}/tests)

@@ -3,6 +3,7 @@
 #include "script/library.h"
 #include "tui/actions.h"
 #include "tui/capture.h"
+#include "tui/pace.h"
 #include "tui/shell.h"
 #include "tui/signals.h"
 #include "tui/start_words.h"
@@ -15,9 +16,6 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-static const double frame_time = 1.0 / 30; /* s; at most 30 redraws a second, and as many looks at the session */
-static const double key_delay = 0.02;      /* s; the longest that a key's effect may wait for its redraw */
-static const double load_share = 0.03;    /* of a core that drawing may take from the simulation: a step waits for its slowest thread */
 static const double replay_time = 0.002;   /* s between two looks while a log is done again */
 enum { KEYS_A_TURN = 256 };
 
@@ -25,22 +23,21 @@ tui_options tui_options_default(void) {
     return (tui_options){.theme = TUI_THEME_AUTO, .palette = TUI_AUTO, .mode = TUI_AUTO, .colours = TUI_AUTO};
 }
 
-/* When things happen, in seconds of app_clock. */
 typedef struct pace {
-    double next_draw;
-    bool hung_up; /* the terminal is gone */
+    tui_pace draw; /* in seconds of app_clock */
+    bool hung_up;  /* the terminal is gone */
 } pace;
 
 /* ---- what comes in ----------------------------------------------------------------------------------------------- */
 
 static void wait_for_input(const tui_app *app, pace *p) {
-    double now = app_clock(), wait = app->shell->replay.active ? replay_time : frame_time;
+    double now = app_clock(), wait = app->shell->replay.active ? replay_time : pace_frame;
     if (app->notice[0]) wait = fmin(wait, app->notice_until - now);
-    if (app->dirty) wait = fmin(wait, p->next_draw - now);
+    wait = pace_wait(&p->draw, now, wait, app->dirty);
     struct pollfd inputs[3] = {{.fd = signals_descriptor(), .events = POLLIN},
                                {.fd = p->hung_up || app->headless ? -1 : STDIN_FILENO, .events = POLLIN},
                                {.fd = app->shell->wake, .events = POLLIN}};
-    if (poll(inputs, 3, (int)ceil(fmax(wait, 0) * 1e3)) > 0 && (inputs[1].revents & (POLLHUP | POLLERR | POLLNVAL)))
+    if (poll(inputs, 3, (int)ceil(wait * 1e3)) > 0 && (inputs[1].revents & (POLLHUP | POLLERR | POLLNVAL)))
         p->hung_up = true;
     uint64_t count;
     if (inputs[2].revents & POLLIN && read(app->shell->wake, &count, sizeof count) < 0) return;
@@ -100,7 +97,7 @@ static void take_keys(tui_app *app, pace *p) {
         if (key == KEY_RESIZE) continue;
         if (key == KEY_MOUSE) take_mouse(app);
         else actions_press(app, key);
-        p->next_draw = fmin(p->next_draw, app_clock() + key_delay);
+        pace_key(&p->draw, app_clock());
     }
 }
 
@@ -151,14 +148,13 @@ static void take_time(tui_app *app) {
 
 static void draw_if_due(tui_app *app, pace *p) {
     double start = app_clock();
-    if (!app->dirty || start < p->next_draw || app->headless) return;
+    if (!app->dirty || !pace_due(&p->draw, start) || app->headless) return;
     app->dirty = false;
     if (app->redraw) clearok(curscr, TRUE);
     app->redraw = false;
     want_mouse(app);
     workbench_draw(app);
-    double cost = app_clock() - start;
-    p->next_draw = start + fmax(frame_time, cost / load_share);
+    pace_drawn(&p->draw, start, app_clock());
 }
 
 static void loop(tui_app *app) {

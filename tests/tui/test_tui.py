@@ -3,19 +3,13 @@
 Usage: test_tui.py DEMO [name ...]   Exit codes: 0 passed, 1 failed, 77 skipped (no tmux).
 """
 import concurrent.futures
-import fcntl
 import os
-import pty
 import random
 import re
-import select
 import shutil
 import signal
-import statistics
-import struct
 import subprocess
 import sys
-import termios
 import time
 
 import terminal
@@ -87,12 +81,8 @@ def test_40x10():
 
 def small(width, height):
     with demo(LONG, width=width, height=height) as s:
-        time.sleep(0.6)
         s.wait(r"too small" if width > 9 else r"\S")
-        s.keys("q")
-        time.sleep(0.2)
-        s.keys("y")
-        time.sleep(0.5)
+        s.keys("q", "y")
         s.resize(80, 24)
         s.finished(130)
 
@@ -221,13 +211,11 @@ def test_ctrl_c_finishes_the_frame():
 
 
 def test_second_ctrl_c_abandons_it():
-    with demo("--frames 500 --frame-ms 60000 --particles 500") as s:
+    with demo("--frames 500 --frame-ms 200000 --particles 500") as s:  # a frame takes ten times PATIENCE
         s.running().keys("C-c")
         s.wait(r"stopping *$")
-        start = time.monotonic()
         s.keys("C-c")
         s.finished(130, outcome=4)
-        check(time.monotonic() - start < 15, "the frame was waited for")
 
 
 def test_ctrl_c_while_paused_and_at_the_end():
@@ -348,74 +336,6 @@ def test_scene_without_damage():
         check("particles by damage" not in s.text(), "a histogram of nothing")
 
 
-class Raw:
-    """The demo on a bare pseudo-terminal: for timing, without tmux between."""
-
-    def __init__(self, arguments, width=80, height=24):
-        self.pid, self.descriptor = pty.fork()
-        if self.pid == 0:
-            os.environ.update(TERM="xterm-256color", LC_ALL="C.UTF-8")
-            os.environ.pop("NO_COLOR", None)
-            fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack("HHHH", height, width, 0, 0))
-            os.execv(DEMO, [DEMO, *arguments.split()])
-
-    def read(self, seconds):
-        ready, _, _ = select.select([self.descriptor], [], [], seconds)
-        return os.read(self.descriptor, 65536) if ready else b""
-
-    def settle(self, quiet):
-        end = time.monotonic() + PATIENCE
-        while self.read(quiet):
-            check(time.monotonic() < end, "the screen never rests")
-
-    def close(self):
-        os.kill(self.pid, signal.SIGKILL)
-        os.waitpid(self.pid, 0)
-        os.close(self.descriptor)
-
-
-def test_keys_are_answered_at_once():
-    raw = Raw("--paused --frames 50 --particles 50000")
-    try:
-        raw.settle(0.5)
-        delays = []
-        for key in b"lhlhlhlhlhl":
-            start = time.monotonic()
-            os.write(raw.descriptor, bytes([key]))
-            check(raw.read(PATIENCE), "no answer to a key")
-            delays.append(time.monotonic() - start)
-            raw.settle(0.15)
-        print(f"  a key is answered after {1e3 * statistics.median(delays):.1f} ms (median), {1e3 * max(delays):.1f} ms (worst)")
-        check(statistics.median(delays) < 0.05, f"keys wait {delays}")
-    finally:
-        raw.close()
-
-
-def test_nothing_is_drawn_while_nothing_changes():
-    raw = Raw("--paused --frames 50 --particles 2000")
-    try:
-        raw.settle(0.5)
-        check(raw.read(2.0) == b"", "a resting screen is redrawn")
-    finally:
-        raw.close()
-
-
-def test_at_most_30_redraws_a_second():
-    raw = Raw("--frames 100000 --frame-ms 2 --particles 200")
-    try:
-        raw.read(PATIENCE)
-        bursts, last, end = 0, 0.0, time.monotonic() + 2
-        while time.monotonic() < end:
-            if raw.read(0.1):
-                now = time.monotonic()
-                bursts += now - last > 0.012  # parts of one redraw arrive closer together
-                last = now
-        print(f"  {bursts / 2:.0f} redraws a second")
-        check(10 <= bursts <= 66, f"{bursts} redraws in 2 s")
-    finally:
-        raw.close()
-
-
 # ---- running them -----------------------------------------------------------------------------------------------------
 
 def collect():
@@ -440,11 +360,8 @@ def main():
         return 77
     tests = collect()
     chosen = sys.argv[2:] or list(tests)
-    # Timings first and alone: they must not wait for other tests.
-    timed = [n for n in chosen if n in ("test_keys_are_answered_at_once", "test_at_most_30_redraws_a_second")]
-    results = [run(n, tests[n]) for n in timed]
     with concurrent.futures.ThreadPoolExecutor(4) as pool:
-        results += pool.map(lambda n: run(n, tests[n]), [n for n in chosen if n not in timed])
+        results = list(pool.map(lambda n: run(n, tests[n]), chosen))
     for name, problem in results:
         print(f"FAIL {name}: {problem}" if problem else f"ok   {name}")
     failed = sum(problem is not None for _, problem in results)

@@ -176,7 +176,7 @@ def remarks_go_to_the_ledger(s):
     call(s, "runs", "tag", ids[2], "elsewhere")
     s.do("runs.all")
     s.do("runs.columns message effects")
-    s.wait(r"elsewhere", patience=10)
+    s.wait(r"elsewhere")
 
 
 @covers("runs.open", "runs.frame", "runs.colour", "runs.turn-left", "runs.turn-right", "runs.tilt-up", "runs.tilt-down", "runs.zoom-in", "runs.zoom-out", "runs.reset", start=None, width=100, height=30)
@@ -202,7 +202,7 @@ def frames_are_played(s):
     s.do("runs.colour fibre_strech")
     s.wait(r"did\s+you\s+mean\s+'fibre_stretch'")
     s.keys("<", "Space")
-    s.wait(r"frame 4 of 4", patience=10)
+    s.wait(r"frame 4 of 4")
     s.wait(r"playing", absent=True)
     s.keys("BSpace")
     s.wait(r"3 of 3 runs")

@@ -58,37 +58,65 @@ def replays_to_the_same_bits(s, log):
         check(hashes(other) == wanted, f"with a terminal: {hashes(other)}, not {wanted}")
 
 
-@test
-def turns_rewind_branch_and_recipe():
-    with Bench("solid/tube_pull.lua --set particles=1500 --set duration=2") as s:
+def tuned_session(start, at_once, paused, running, branched, material):
+    """A whole tuning session: knobs turned while paused and while frames go on, a rewind with [ and a branch from there, turns of the branch, its
+    material saved as a recipe, and the branch run to its end. Each of the lists is (path, value)."""
+    with Bench(start) as s:
         first = s.paused().frame()
-        turn(s, "eta", "0.3")
+        for path, value in at_once:
+            turn(s, path, value)
         run_to(s, first + 2)
-        turn(s, "break_stretch", "0.2")
-        turn(s, "alpha", "-0.5")
+        for path, value in paused:
+            turn(s, path, value)
         s.keys("Space")
         s.wait(rf"frame +(?!{first + 2}/)\d+/")
-        turn(s, "residual", "0.05")  # while it goes on
+        for path, value in running:
+            turn(s, path, value)
         s.do("run.pause on")
         s.wait(r"paused *$")
-        s.do(f"run.branch {first + 2}")
+        s.keys("[")
+        s.wait(r"Frame \d+: b goes on from here")
+        s.do(f"run.choose {first + 2}")
+        s.keys("b")
         s.wait(rf"frame +{first + 2}/")
         s.wait(r"paused *$")
-        turn(s, "sigma_c", "40")
+        s.until("the branch", lambda: s.sql("SELECT parent_frame FROM runs WHERE parent_frame IS NOT NULL") == [[first + 2]])
+        for path, value in branched:
+            turn(s, path, value)
         s.do("run.save-recipe tuned.lua")
         s.wait(r"is in tuned\.lua")
         s.keys("Space")
         s.wait(r"done *$", patience=60)
         s.keys("q")
         s.wait(r"^END")
+        turned = [row[0].split(".")[-1] for row in s.sql("SELECT DISTINCT path FROM knob_turns")]
+        asked = [path.split(".")[-1] for path, _ in (*at_once, *paused, *running, *branched)]
+        check(set(asked) == set(turned), f"turned {asked}, in the ledger {turned}")
         log = os.path.join(s.folder, "session.log")
         shutil.copy(os.path.join(s.sql("SELECT output FROM runs ORDER BY run DESC")[0][0], "commands.log"), log)
         with open(os.path.join(s.folder, "tuned.lua"), encoding="utf-8") as file:
             recipe = file.read()
+        check(material in recipe, f"not a recipe of {material}: {recipe}")
         os.remove(os.path.join(s.folder, "tuned.lua"))
+        untouched = hashes(s)
+        check(len(set(untouched)) == 2, f"the branch is as its parent: {untouched}")
         replays_to_the_same_bits(s, log)
         with open(os.path.join(s.folder, "tuned.lua"), encoding="utf-8") as file:
             check(values(file.read()) == values(recipe), "the replay saved another recipe")
+
+
+@test
+def a_solid_is_tuned():
+    tuned_session("solid/tube_pull.lua --set particles=1500 --set duration=4", at_once=[("eta", "0.3")],
+                  paused=[("break_stretch", "0.2"), ("alpha", "-0.5"), ("gamma", "6")], running=[("residual", "0.05")],
+                  branched=[("sigma_c", "40"), ("eta", "0.2")], material="sigma_c")
+
+
+@test
+def a_sheet_with_a_source_is_tuned():
+    tuned_session("sheet/paper_towel.lua --set particles=900 --set variant=wet --frames 250", at_once=[("sources.1.strength", "0.5")],
+                  paused=[("fracture.G", "1.5"), ("swelling.alpha", "0.1"), ("diffusion.k", "0.8")], running=[("sources.1.strength", "2")],
+                  branched=[("sources.1.strength", "0"), ("softening.stiffness", "1")], material="diffusion")
 
 
 @test

@@ -113,7 +113,8 @@ void compare_draw(tui_app *app, void *own, tui_area area) {
     compare_state *state = own;
     int width = (area.width - 1) / 2, lines = area.height - 3; /* names, what differs, frames */
     int histograms = lines * 9 / 20;
-    int fits = histograms >= 26 ? 26 : histograms >= 11 ? 11 : histograms >= 6 ? 6 : 0;
+    bool any = state->sides[0].has_frame || state->sides[1].has_frame;
+    int fits = !any ? 0 : histograms >= 26 ? 26 : histograms >= 11 ? 11 : histograms >= 6 ? 6 : 0;
     for (int i = 0; i < COMPARE_SIDES; i++) {
         int x = area.x + i * (width + 1);
         draw_name(app, &state->sides[i], (tui_area){area.y, x, 1, width}, i == 0 ? "A" : "B");

@@ -4,7 +4,7 @@
 
 #include "tui/app.h"
 
-enum { CONSOLE_LINES = 500, CONSOLE_WIDTH = 400, CONSOLE_HISTORY = 100, CONSOLE_ANSWER = 8192 };
+enum { CONSOLE_LINES = 500, CONSOLE_PARTS = 64, CONSOLE_WIDTH = 400, CONSOLE_HISTORY = 100, CONSOLE_ANSWER = 8192 };
 
 typedef struct console_worker console_worker;
 

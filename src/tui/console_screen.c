@@ -192,6 +192,20 @@ static void tick(tui_app *app, void *state, double now) {
     app->dirty = true;
 }
 
+/* Folds a line at spaces where that wastes little: where each part begins. */
+static int fold(const char *text, int width, int starts[CONSOLE_PARTS]) {
+    int count = 1, length = (int)strlen(text), at = 0;
+    starts[0] = 0;
+    while (width > 0 && length - at > width && count < CONSOLE_PARTS) {
+        int cut = width;
+        while (cut > width / 2 && text[at + cut] != ' ') cut--;
+        if (text[at + cut] != ' ') cut = width;
+        at += cut + (text[at + cut] == ' ');
+        starts[count++] = at;
+    }
+    return count;
+}
+
 static void draw(tui_app *app, void *state, tui_area area) {
     console_state *c = state;
     draw_heading(&app->theme, area, 0, "console", c->worker && console_busy(c->worker) ? "running; Esc stops" : NULL);
@@ -199,11 +213,12 @@ static void draw(tui_app *app, void *state, tui_area area) {
     int bottom = area.height - 2, width = area.width - 2, skip = c->scroll;
     for (int i = c->line_count - 1; i >= 0 && bottom >= 1; i--) {
         const console_line *line = &c->lines[i];
-        int length = (int)strlen(line->text), rows = length > 0 ? (length + width - 1) / width : 1;
+        int starts[CONSOLE_PARTS], rows = fold(line->text, width, starts);
         for (int part = rows - 1; part >= 0 && bottom >= 1; part--) {
             char text[CONSOLE_WIDTH];
             if (skip-- > 0) continue;
-            snprintf(text, sizeof text, "%.*s", width, line->text + part * width);
+            int size = part + 1 < rows ? starts[part + 1] - starts[part] : width;
+            snprintf(text, sizeof text, "%.*s", size < width ? size : width, line->text + starts[part]);
             draw_text(&app->theme, area, bottom--, 1, line->style, text);
         }
     }

@@ -64,7 +64,9 @@ void knob_panel_arrange(knob_panel *panel, int count) {
     }
     if (panel->cursor >= panel->row_count) panel->cursor = panel->row_count - 1;
     if (panel->cursor < 0) panel->cursor = 0;
-    if (kept < 0) knob_panel_move(panel, 0);
+    int first = 0; /* one that can be turned */
+    while (first < panel->count && !panel->list[first].live) first++;
+    if (kept < 0) knob_panel_go(panel, first < panel->count ? first : 0);
     else knob_panel_go(panel, kept < panel->count ? kept : 0);
     const knob *now = knob_panel_current(panel);
     panel->component = now && component < now->components ? component : 0;

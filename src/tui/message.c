@@ -9,11 +9,7 @@ enum { MESSAGE_BYTES = 768 + 512, MESSAGE_ROWS = 3 };
 static tui_style ended_text(const session_snapshot *s, char *text) {
     switch (s->outcome) {
     case STATUS_OK:
-        if (s->output[0]) {
-            snprintf(text, MESSAGE_BYTES, "Done. Frames are in %s", s->output);
-        } else {
-            snprintf(text, MESSAGE_BYTES, "Done.");
-        }
+        snprintf(text, MESSAGE_BYTES, "Done.%s%s  b branches off, R runs again.", s->output[0] ? " Frames are in " : "", s->output);
         return STYLE_GOOD;
     case STATUS_INTERRUPTED:
         snprintf(text, MESSAGE_BYTES, "Stopped; kept up to frame %lld. %s", (long long)s->frame, s->message);

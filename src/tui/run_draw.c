@@ -154,7 +154,7 @@ static void draw_one(tui_app *app, run_state *state, const run_layout *at, tui_a
 static void draw_picture(tui_app *app, run_state *state, tui_area area) {
     if (area.height < 1 || area.width < 1) return;
     if (app->shot->point_count == 0) {
-        const char *text = !app->run ? "no run: F2 lists the scenes" : app->ended ? "no particles" : "the scene is being set up …";
+        const char *text = app->run && app->ended ? "no particles" : "the scene is being set up …";
         draw_text(&app->theme, area, area.height / 2, (area.width - draw_width(text)) / 2, STYLE_DIM, text);
         return;
     }
@@ -162,10 +162,24 @@ static void draw_picture(tui_app *app, run_state *state, tui_area area) {
     particle_view_draw(&state->view, &app->theme, area, &points);
 }
 
+/* Before the first run. */
+static void draw_nothing(const tui_app *app, tui_area body) {
+    static const char *const lines[] = {"No run is on.", "F2 shows the scenes: enter there starts one.", "F5 shows past runs and their frames."};
+    int count = sizeof lines / sizeof *lines;
+    for (int i = 0; i < count; i++) {
+        int column = (body.width - draw_width(lines[i])) / 2;
+        draw_text(&app->theme, body, (body.height - count) / 2 + i, column > 0 ? column : 0, i == 0 ? STYLE_STRONG : STYLE_DIM, lines[i]);
+    }
+}
+
 void run_draw(tui_app *app, void *own, tui_area body) {
     run_state *state = own;
     run_layout at = run_lay_out(state, body);
     state->knobs_in_view = false;
+    if (!app->run && !app_starting(app)) {
+        draw_nothing(app, body);
+        return;
+    }
     if (at.picture.height > 0) draw_picture(app, state, at.picture);
     if (at.third.height > 0) draw_all(app, state, &at, body);
     else if (at.second.height > 0) draw_two(app, state, &at, body);

@@ -46,7 +46,8 @@ static status take_value(void *context, const ledger_cell *cells, int count, rep
     if (!line) return STATUS_OK;
     char *text = line->cells[read->run];
     double number = cells[1].number;
-    if (!isnan(number) && number != rint(number)) snprintf(text, RUNS_CELL, "%.9g", number);
+    if (!isnan(number) && number == rint(number) && fabs(number) < 1e15) snprintf(text, RUNS_CELL, "%.0f", number); /* without SQLite's ".0" */
+    else if (!isnan(number)) snprintf(text, RUNS_CELL, "%.9g", number);
     else snprintf(text, RUNS_CELL, "%s", cells[1].text ? cells[1].text : "");
     return STATUS_OK;
 }

@@ -490,6 +490,24 @@ static void tick_runs(tui_app *app, void *state, double now) {
     if (s->page == RUNS_TABLE || s->page == RUNS_PLOT) runs_reload(app, s, false);
 }
 
+/* The key line of the pages other than the table. */
+static const char *hint_of_runs(const void *state, const tui_action *action) {
+    static const struct {
+        runs_page page;
+        const char *action, *word;
+    } words[] = {
+        {RUNS_PLAYER, "mark", "play"}, {RUNS_PLAYER, "right", "frame"}, {RUNS_PLAYER, "home", "first"}, {RUNS_PLAYER, "end", "last"},
+        {RUNS_PLAYER, "colour", "colour"}, {RUNS_PLAYER, "back", "table"}, {RUNS_PLOT, "measure", "measure"}, {RUNS_PLOT, "against", "against"},
+        {RUNS_PLOT, "logarithmic", "log"}, {RUNS_PLOT, "back", "table"}, {RUNS_DETAIL, "down", "scroll"}, {RUNS_DETAIL, "open", "frames"},
+        {RUNS_DETAIL, "tag", "tag"}, {RUNS_DETAIL, "note", "note"}, {RUNS_DETAIL, "back", "table"},
+    };
+    const runs_state *s = state;
+    if (s->page == RUNS_TABLE) return strcmp(action->name, "back") == 0 ? NULL : action->hint;
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+        if (words[i].page == s->page && strcmp(words[i].action, action->name) == 0) return words[i].word;
+    return NULL;
+}
+
 static void mouse_runs(tui_app *app, void *state, tui_area area, int row, int column, int wheel) {
     runs_state *s = state;
     (void)area, (void)column;
@@ -512,6 +530,7 @@ const tui_screen screen_runs = {
     .enter = enter_runs,
     .tick = tick_runs,
     .cursor = cursor_of_runs,
+    .hint = hint_of_runs,
     .draw = runs_draw,
     .mouse = mouse_runs,
 };

@@ -66,6 +66,8 @@ typedef struct tui_screen {
     void (*draw)(tui_app *app, void *state, tui_area area);
     /* Where the cursor is, as an action ("choose RUN"): noted before an action that acts `here`. False: nowhere that matters. */
     bool (*cursor)(const tui_app *app, const void *state, char *action, size_t size);
+    /* An action's word on the key line, where that depends on what the screen shows; NULL: it is not on it. Without this function: its hint. */
+    const char *(*hint)(const void *state, const tui_action *action);
     /* A line for the message row when there is nothing more pressing; false: none. */
     bool (*message)(tui_app *app, void *state, char *text, size_t size, tui_style *style);
     /* Keys before they become actions, for typing into a field: true when the key was taken. */

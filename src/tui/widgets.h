@@ -40,7 +40,7 @@ int message_rows(tui_app *app, int width); /* how many rows it asks for: 1 to 3 
 void widget_message(tui_app *app, tui_area area);
 
 /* keys.c: the key line. */
-void widget_keys(const tui_app *app, tui_area area);
+void widget_keys(tui_app *app, tui_area area);
 
 /* pages.c: help, printed text, the command log. They clamp app->scroll. */
 void widget_page(tui_app *app, tui_area area);

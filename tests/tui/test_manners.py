@@ -14,7 +14,7 @@ import time
 
 import bench
 from bench import Bench, check, test
-from terminal import COLOUR, PATIENCE
+from terminal import COLOUR
 
 SMALL_RUN = "solid/tube_pull.lua --set particles=900 --frames 3"
 

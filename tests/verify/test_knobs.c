@@ -347,6 +347,8 @@ static void turn_one(const rig *g, const knob *k) {
     record_clear(&after);
     if (straight == g->unturned) return;
     if (*k->effect) {
+        /* Regions of many rates are made anew at every turn: what acts there alone has been forgotten where a turn changes only what it must. */
+        if (g->make == multirate_sheets && strcmp(k->effect, "multirate") != 0) return;
         int count, e = effect_index(k->effect);
         acted[e][effect_parameter(effect_catalogue(&count)[e], k->key)] = true;
     } else {

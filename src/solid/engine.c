@@ -67,6 +67,7 @@ static void plan_fields(solid *s) {
     s->fibre_field = find_index(s, "fibre");
     s->fibre2_field = find_index(s, "fibre2");
     s->tension_field = find_index(s, "fibre_tension");
+    s->fibre_wave_field = find_index(s, "fibre_wave");
     s->snapped_field = find_index(s, "fibre_damage");
     s->transfers_damage = s->damage_field >= 0;
 }

@@ -23,12 +23,19 @@
 
 /* Planes of cells, [slot][PLANES][BLOCK_NODES]. */
 enum { TENSION, WEIGHT, RELAXATION, STRAIN, RESIDUAL, PRECONDITIONER, SEARCH, IMAGE, PRECONDITIONED, PLANES, STARTED = 4 };
+/* Before the iterations: Σ V Γ (a · G)² over all nodes, and over what may move. */
+enum { PULL = SEARCH, FREE_PULL = IMAGE };
 
 enum { ITERATION_LIMIT = 2000, SET_ROUNDS = 4 };
 
 /* Tensions that alternate from cell to cell pull at nothing: left alone they grow without bound, keep conjugate gradients busy and
  * shorten the step. This share of the diagonal damps them; what it lets through of the others, the correction below takes back. */
 #define REGULARISATION ((real)5e-5)
+
+/* A cell among held nodes has no say: the grip gives it its strain rate, and what is left for its tension to pull at is the rim of its kernel. Where
+ * less than this share of its squared weights lies on what may move, it is no unknown and has no tension; left in, its tension grows with the inverse of
+ * that share. Along fibres that enter a grip the shares are 0, 3.5 % (the outermost of four planes of nodes is free), 50 %, 96.5 % and 1. */
+#define FREE_SHARE ((real)0.1)
 
 /* A fibre's stretch is taken back within a fraction of the time that the matrix needs to carry a wave over a cell (`recovery`), so that what tolerance and time
  * steps let through does not add up; at most this share in one step, and beyond the most that is corrected at once it is pulled back gently. (A
@@ -90,7 +97,6 @@ static real *vectors(const solid *s, int64_t slot) {
 
 typedef struct pass_context {
     solid *state;
-    const int32_t *blocks;
     real dt;
 } pass_context;
 
@@ -154,7 +160,7 @@ SIMD_INLINE void start_block(pass_context *c, int32_t index, int worker, kernel_
     for (int which = 0; which < STARTED; which++) exchange_plane(s, b, window + which * WINDOW_NODES, which, true);
 }
 
-/* Nodes ← Bᵀ SEARCH. */
+/* Nodes ← Bᵀ SEARCH, and as their fourth component Σ_p w_ip V_p |λ_p| with the tension λ of SEARCH. */
 SIMD_INLINE void spread_block(pass_context *c, int32_t index, int worker, kernel_kind kernel) {
     solid *s = c->state;
     const solid_block *b = &s->blocks[index];
@@ -171,6 +177,7 @@ SIMD_INLINE void spread_block(pass_context *c, int32_t index, int worker, kernel
         fibre_lanes l = lanes_load(s, kernel, pack, part);
         vec q = vec_all(0);
         for (int lane = 0; lane < LANES_OF(t, first); lane++) q[lane] = cells_gather(&l, lane, cells);
+        vec strength = l.volume * vec_abs(q);
         q *= l.volume * scale;
         const vec a[3] = {l.a.x, l.a.y, l.a.z};
         const vec u[3] = {l.at.u.x, l.at.u.y, l.at.u.z};
@@ -182,6 +189,7 @@ SIMD_INLINE void spread_block(pass_context *c, int32_t index, int worker, kernel
             columns[P2G_BASE + axis] = -(q * a[axis] * along);
             for (int column = 0; column < 3; column++) columns[P2G_X + 4 * column + axis] = q * a[axis] * a[column];
         }
+        columns[P2G_BASE + 3] = strength;
         columns[P2G_NODE] = window_index(l.at.base);
         records_store(records, first, 0, columns, RECORD);
         if (k + 1 == t->pack_count && part + 1 == PACK_PARTS)
@@ -243,8 +251,65 @@ SIMD_INLINE void collect_block(pass_context *c, int32_t index, int worker, kerne
     exchange_plane(s, b, cells, into, true);
 }
 
-/* Σ_i (Δt/m_i) (a · G_ip)² of one lane; the inverse masses are the fourth component of the node vectors. */
-SIMD_INLINE real response(const fibre_lanes *l, int lane, kernel_kind kernel, real scale, const real *window) {
+/* What a tension of one at a lane's particle does: Σ_i (Δt/m_i) |P_i a|² (a · G_ip)², and Σ_i (a · G_ip)² with and without what holds leave of
+ * it. */
+typedef struct lane_response {
+    real rate, all, free;
+} lane_response;
+
+/* The window's nodes are the normals of holds and Δt/m_i (hold_normals_slot). */
+SIMD_INLINE lane_response response(const fibre_lanes *l, int lane, kernel_kind kernel, real scale, const real *window) {
+    const vec u[3] = {l->at.u.x, l->at.u.y, l->at.u.z};
+    const real a[3] = {l->a.x[lane], l->a.y[lane], l->a.z[lane]};
+    int nodes = kernel == KERNEL_QUADRATIC ? 3 : 4;
+    real w[3][4], x[3][4];
+    lane_response sum = {0};
+    for (int axis = 0; axis < 3; axis++) {
+        vec weight[4];
+        kernel_weights(kernel, u[axis], weight);
+        for (int n = 0; n < nodes; n++) {
+            w[axis][n] = weight[n][lane];
+            x[axis][n] = a[axis] * ((real)n - u[axis][lane]);
+        }
+    }
+    const real *from = window + (int)window_index(l->at.base)[lane] * NODE;
+    for (int i = 0; i < nodes; i++)
+        for (int j = 0; j < nodes; j++)
+            for (int n = 0; n < nodes; n++) {
+                const real *node = from + (i * STRIDE_X + j * STRIDE_Y + n) * NODE;
+                real gradient = scale * w[0][i] * w[1][j] * w[2][n] * (x[0][i] + x[1][j] + x[2][n]), square = gradient * gradient;
+                real normal = node[0] * a[0] + node[1] * a[1] + node[2] * a[2], left = square * (1 - normal * normal);
+                sum.all += square;
+                sum.free += node[3] > 0 ? left : 0;
+                sum.rate += left * node[3];
+            }
+    return sum;
+}
+
+SIMD_INLINE void precondition_block(pass_context *c, int32_t index, int worker, kernel_kind kernel) {
+    solid *s = c->state;
+    const solid_block *b = &s->blocks[index];
+    if (!block_is_inextensible(s, b)) return;
+    solid_worker *own = &s->workers[worker];
+    real *cells = own->implicit_window, scale = gradient_scale(s, kernel);
+    exchange_vectors(s, b, own->window, false);
+    memset(cells, 0, 3 * WINDOW_NODES * sizeof *cells);
+    FOR_EACH_PART(s, b, {
+        fibre_lanes l = lanes_load(s, kernel, pack, part);
+        for (int lane = 0; lane < LANES_OF(t, first); lane++) {
+            lane_response one = response(&l, lane, kernel, scale, own->window);
+            cells_scatter(&l, lane, l.volume[lane] * one.rate, cells);
+            cells_scatter(&l, lane, l.volume[lane] * one.all, cells + WINDOW_NODES);
+            cells_scatter(&l, lane, l.volume[lane] * one.free, cells + 2 * WINDOW_NODES);
+        }
+    })
+    exchange_plane(s, b, cells, PRECONDITIONER, true);
+    exchange_plane(s, b, cells + WINDOW_NODES, PULL, true);
+    exchange_plane(s, b, cells + 2 * WINDOW_NODES, FREE_PULL, true);
+}
+
+/* D⁻¹ Σ_i w_ip (a · (x_i − x_p))² T_i of one lane; T is the fourth component of the node vectors (wave_slot). */
+SIMD_INLINE real wave_square(const fibre_lanes *l, int lane, kernel_kind kernel, const real *window) {
     const vec u[3] = {l->at.u.x, l->at.u.y, l->at.u.z};
     const real a[3] = {l->a.x[lane], l->a.y[lane], l->a.z[lane]};
     int nodes = kernel == KERNEL_QUADRATIC ? 3 : 4;
@@ -261,87 +326,79 @@ SIMD_INLINE real response(const fibre_lanes *l, int lane, kernel_kind kernel, re
     for (int i = 0; i < nodes; i++)
         for (int j = 0; j < nodes; j++)
             for (int n = 0; n < nodes; n++) {
-                real gradient = scale * w[0][i] * w[1][j] * w[2][n] * (x[0][i] + x[1][j] + x[2][n]);
-                sum += gradient * gradient * from[(i * STRIDE_X + j * STRIDE_Y + n) * NODE + 3];
+                real along = x[0][i] + x[1][j] + x[2][n];
+                sum += w[0][i] * w[1][j] * w[2][n] * along * along * from[(i * STRIDE_X + j * STRIDE_Y + n) * NODE + 3];
             }
-    return sum;
+    return sum * (real)(kernel == KERNEL_QUADRATIC ? 4 : 3);
 }
 
-SIMD_INLINE void precondition_block(pass_context *c, int32_t index, int worker, kernel_kind kernel) {
-    solid *s = c->state;
-    const solid_block *b = &s->blocks[index];
-    if (!block_is_inextensible(s, b)) return;
-    solid_worker *own = &s->workers[worker];
-    real *cells = own->implicit_window, scale = gradient_scale(s, kernel);
-    exchange_vectors(s, b, own->window, false);
-    memset(cells, 0, WINDOW_NODES * sizeof *cells);
-    FOR_EACH_PART(s, b, {
-        fibre_lanes l = lanes_load(s, kernel, pack, part);
-        for (int lane = 0; lane < LANES_OF(t, first); lane++)
-            cells_scatter(&l, lane, l.volume[lane] * response(&l, lane, kernel, scale, own->window), cells);
-    })
-    exchange_plane(s, b, cells, PRECONDITIONER, true);
-}
-
-/* The cells' tensions back to the particles: the next solve starts from them. */
+/* The cells' tensions back to the particles: the next solve starts from them. And ρ0 c² of the transverse waves that they carry, for the step's
+ * limit: with K = Σ_p V_p |λ_p| g_p g_pᵀ, g_ip = a · G_ip, no frequency of M ü = −K u is above
+ * max_p Σ_i g_ip² (Σ_q w_iq V_q |λ_q|)/(w_ip m_i), which is element by element with each node's mass shared out by w V |λ|. */
 SIMD_INLINE void keep_block(pass_context *c, int32_t index, int worker, kernel_kind kernel) {
     solid *s = c->state;
     const solid_block *b = &s->blocks[index];
     if (!block_is_inextensible(s, b)) return;
-    real *cells = s->workers[worker].implicit_window;
+    solid_worker *own = &s->workers[worker];
+    real *cells = own->implicit_window;
     exchange_plane(s, b, cells, TENSION, false);
+    exchange_vectors(s, b, own->window, false);
     FOR_EACH_PART(s, b, {
         fibre_lanes l = lanes_load(s, kernel, pack, part);
         real *tension = field_at(&s->fields[s->tension_field], pack, 0, part);
-        for (int lane = 0; lane < LANES_OF(t, first); lane++) tension[lane] = cells_gather(&l, lane, cells);
+        vec wave = vec_all(0);
+        for (int lane = 0; lane < LANES_OF(t, first); lane++) {
+            tension[lane] = cells_gather(&l, lane, cells);
+            wave[lane] = wave_square(&l, lane, kernel, own->window);
+        }
+        wave *= (real)s->definition.materials[t->material].density;
+        vec_store(field_at(&s->fields[s->fibre_wave_field], pack, 0, part), scaled(s, s->density_scale, pack, part, wave));
     })
 }
 
 #define PASSES(name, kernel)                                                                                           \
-    static void start_##name(void *context, int64_t i, int worker) {                                                   \
-        pass_context *c = context;                                                                                     \
-        start_block(c, c->blocks[i], worker, kernel);                                                                  \
+    static void start_##name(void *context, int32_t block, int32_t next, int worker) {                                 \
+        (void)next;                                                                                                    \
+        start_block(context, block, worker, kernel);                                                                   \
     }                                                                                                                  \
-    static void spread_##name(void *context, int64_t i, int worker) {                                                  \
-        pass_context *c = context;                                                                                     \
-        spread_block(c, c->blocks[i], worker, kernel);                                                                 \
+    static void spread_##name(void *context, int32_t block, int32_t next, int worker) {                                \
+        (void)next;                                                                                                    \
+        spread_block(context, block, worker, kernel);                                                                  \
     }                                                                                                                  \
-    static void image_##name(void *context, int64_t i, int worker) {                                                   \
-        pass_context *c = context;                                                                                     \
-        collect_block(c, c->blocks[i], worker, kernel, IMAGE);                                                         \
+    static void image_##name(void *context, int32_t block, int32_t next, int worker) {                                 \
+        (void)next;                                                                                                    \
+        collect_block(context, block, worker, kernel, IMAGE);                                                          \
     }                                                                                                                  \
-    static void right_##name(void *context, int64_t i, int worker) {                                                   \
-        pass_context *c = context;                                                                                     \
-        collect_block(c, c->blocks[i], worker, kernel, RESIDUAL);                                                      \
+    static void right_##name(void *context, int32_t block, int32_t next, int worker) {                                 \
+        (void)next;                                                                                                    \
+        collect_block(context, block, worker, kernel, RESIDUAL);                                                       \
     }                                                                                                                  \
-    static void precondition_##name(void *context, int64_t i, int worker) {                                            \
-        pass_context *c = context;                                                                                     \
-        precondition_block(c, c->blocks[i], worker, kernel);                                                           \
+    static void precondition_##name(void *context, int32_t block, int32_t next, int worker) {                          \
+        (void)next;                                                                                                    \
+        precondition_block(context, block, worker, kernel);                                                            \
     }                                                                                                                  \
-    static void keep_##name(void *context, int64_t i, int worker) {                                                    \
-        pass_context *c = context;                                                                                     \
-        keep_block(c, c->blocks[i], worker, kernel);                                                                   \
+    static void keep_##name(void *context, int32_t block, int32_t next, int worker) {                                  \
+        (void)next;                                                                                                    \
+        keep_block(context, block, worker, kernel);                                                                    \
     }
 PASSES(quadratic, KERNEL_QUADRATIC)
 PASSES(cubic, KERNEL_CUBIC)
 
-typedef void block_pass(void *context, int64_t i, int worker);
 #define PASS(s, name) ((s)->definition.kernel == KERNEL_CUBIC ? name##_cubic : name##_quadratic)
 
-static void by_colour(solid *s, real dt, block_pass *pass) {
+static void by_colour(solid *s, real dt, coloured_pass *pass) {
     pass_context c = {.state = s, .dt = dt};
-    for (int colour = 0; colour < s->colour_count; colour++) {
-        c.blocks = s->colour_blocks + s->colour_start[colour];
-        parallel_for(s->threads, s->colour_start[colour + 1] - s->colour_start[colour], 1, pass, &c);
-    }
+    colours_pass(s, pass, &c);
 }
 
 /* ---- nodes and cells, slot by slot ------------------------------------------------------------------------------- */
 
+typedef void slot_pass(void *context, int64_t slot, int worker);
+
 typedef struct slot_context {
     solid *state;
     real dt, factor;
-    block_pass *pass;
+    slot_pass *pass;
 } slot_context;
 
 static void on_listed_slot(void *context, int64_t i, int worker) {
@@ -361,7 +418,7 @@ static void list_slots(solid *s) {
         if (c->reached[slot]) c->slots[c->slot_count++] = slot;
 }
 
-static void over_slots(solid *s, block_pass *pass, slot_context *context) {
+static void over_slots(solid *s, slot_pass *pass, slot_context *context) {
     context->pass = pass;
     parallel_for(s->threads, s->constraint.slot_count, 32, on_listed_slot, context);
 }
@@ -401,7 +458,7 @@ static void prepare_slot(void *context, int64_t slot, int worker) {
     for (int n = 0; n < BLOCK_NODES; n++) {
         tension[n] = weight[n] > 0 ? tension[n] / weight[n] : 0;
         strain[n] = weight[n] > 0 ? strain[n] / weight[n] : 0;
-        search[n] = tension[n];
+        search[n] = 0;
         sums.first += (double)weight[n] * (double)weight[n];
         double speed2 = 0;
         for (int i = 0; i < 3; i++) {
@@ -412,6 +469,32 @@ static void prepare_slot(void *context, int64_t slot, int worker) {
         v[n * NODE + 3] = s->constraint.holds[slot * BLOCK_NODES + n].kind == HOLD_FIXED ? 0 : inverse_mass(nodes[n * NODE + 3], c->dt);
     }
     s->constraint.sums[slot] = sums;
+}
+
+/* Node vectors ← the normals of holds and Δt/m. */
+static void hold_normals_slot(void *context, int64_t slot, int worker) {
+    (void)worker;
+    slot_context *c = context;
+    real *v = vectors(c->state, slot);
+    for (int n = 0; n < BLOCK_NODES; n++) {
+        const node_hold *h = &c->state->constraint.holds[slot * BLOCK_NODES + n];
+        bool in_plane = h->kind == HOLD_PLANE || h->kind == HOLD_TOUCHING;
+        for (int i = 0; i < 3; i++) v[n * NODE + i] = in_plane ? h->normal[i] : 0;
+        if (h->kind == HOLD_STUCK) v[n * NODE + 3] = 0;
+    }
+}
+
+/* The nodes' fourth component ← T_i = Σ_q w_iq V_q |λ_q| / m_i; a node whose velocity is prescribed does not swing. */
+static void wave_slot(void *context, int64_t slot, int worker) {
+    (void)worker;
+    slot_context *c = context;
+    solid *s = c->state;
+    const real *nodes = s->grid + slot * BLOCK_NODES * NODE;
+    real *v = vectors(s, slot);
+    for (int n = 0; n < BLOCK_NODES; n++) {
+        bool swings = nodes[n * NODE + 3] > 0 && s->constraint.holds[slot * BLOCK_NODES + n].kind != HOLD_FIXED;
+        v[n * NODE + 3] = swings ? v[n * NODE + 3] / nodes[n * NODE + 3] : 0;
+    }
 }
 
 static void clear_vectors(void *context, int64_t slot, int worker) {
@@ -454,16 +537,20 @@ static void residual_slot(void *context, int64_t slot, int worker) {
     s->constraint.sums[slot] = sums;
 }
 
-/* Adds the share of the diagonal that keeps the operator definite. Sums: first Σ (Bv*)². */
+/* Drops the cells that pull at little but held nodes, and adds the share of the diagonal that keeps the operator definite. Sums: first
+ * Σ (Bv*)². */
 static void regularise_slot(void *context, int64_t slot, int worker) {
     (void)worker;
     slot_context *c = context;
     solid *s = c->state;
-    const real *r = plane(s, slot, RESIDUAL), *weight = plane(s, slot, WEIGHT), *response = plane(s, slot, PRECONDITIONER);
-    real *relaxation = plane(s, slot, RELAXATION);
+    real *r = plane(s, slot, RESIDUAL), *weight = plane(s, slot, WEIGHT), *response = plane(s, slot, PRECONDITIONER);
+    real *relaxation = plane(s, slot, RELAXATION), *tension = plane(s, slot, TENSION), *search = plane(s, slot, SEARCH);
+    const real *pull = plane(s, slot, PULL), *free_pull = plane(s, slot, FREE_PULL);
     constraint_sums sums = {0};
     for (int n = 0; n < BLOCK_NODES; n++) {
+        if (!(free_pull[n] > FREE_SHARE * pull[n])) r[n] = weight[n] = response[n] = relaxation[n] = tension[n] = 0;
         relaxation[n] += REGULARISATION * weight[n] * response[n];
+        search[n] = tension[n];
         sums.first += (double)r[n] * (double)r[n];
     }
     s->constraint.sums[slot] = sums;
@@ -604,6 +691,7 @@ static constraint_sums begin(solid *s, slot_context *c, double *enough) {
     over_slots(s, prepare_slot, c);
     constraint_sums size = sum_slots(s);
     by_colour(s, c->dt, PASS(s, right));
+    over_slots(s, hold_normals_slot, c);
     by_colour(s, c->dt, PASS(s, precondition));
     over_slots(s, regularise_slot, c);
     double right = sum_slots(s).first, tolerance = s->constraint.tolerance;
@@ -670,6 +758,7 @@ static status iterate(solid *s, slot_context *c, report *r) {
     over_slots(s, search_tension_slot, c);
     over_slots(s, clear_vectors, c);
     by_colour(s, c->dt, PASS(s, spread));
+    over_slots(s, wave_slot, c);
     by_colour(s, c->dt, PASS(s, keep));
     return STATUS_OK;
 }

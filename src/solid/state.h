@@ -176,7 +176,7 @@ struct solid {
     int field_count;
     solid_field fields[FIELD_LIMIT];
     int density_scale, stiffness_scale, toughness_scale, viscosity_scale, gamma_scale; /* the same: parameters that vary in place */
-    int damage_field, history_field, fibre_field, fibre2_field, tension_field, snapped_field; /* indices, −1 when absent */
+    int damage_field, history_field, fibre_field, fibre2_field, tension_field, fibre_wave_field, snapped_field; /* indices, −1 when absent */
 
     int32_t tile_count, tile_capacity, result_capacity, block_count, block_capacity, colour_capacity;
     solid_tile *tiles;

@@ -31,5 +31,5 @@ return s.scene {
                lattice = v == "scattered" and "scattered" or "square", radius = v == "scattered" and 3 or nil, grain = v == "grain" and s.fibres.direction { 1, 1, 0 } or nil } },
   grips  = { grip(-1), grip(1) },
   expect = { energy_gain = 0.02, speed_max = 60, spread = 8, broken_fraction = v == "no_toughness" and { 0.01, 1 } or v == "unbreakable" and 0 or nil,
-             bond_stretch_max = v == "rubber" and { 5, 12 } or nil },
+             bond_stretch_max = v == "rubber" and { 4, 12 } or nil },
 }

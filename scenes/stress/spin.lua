@@ -2,7 +2,7 @@
 --
 --   variant   slow: the rim at a tenth of the speed of waves; fast: at half of it, where it swells by centrifugal force
 local s = require "sunder"
-local p = s.params { duration = 2, fps = 20, dx = 0.1, variant = s.choice { "slow", "fast" } }
+local p = s.params { duration = 8, fps = 5, dx = 0.125, variant = s.choice { "slow", "fast" } }
 local waves = 35 -- speed of pressure waves: (E/density)^(1/2), about
 local rate = (p.variant == "fast" and 0.5 or 0.1) * waves / 0.5
 

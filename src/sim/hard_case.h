@@ -28,7 +28,7 @@ typedef enum hard_sense { HARD_AT_MOST, HARD_AT_LEAST } hard_sense;
     X(determinant_end, "1", HARD_AT_LEAST, "smallest det F at the end")                                                       \
     X(fibre_stretch_min, "1", HARD_AT_LEAST, "smallest stretch along the first fibres")                                       \
     X(fibre_stretch_max, "1", HARD_AT_MOST, "largest stretch along the first fibres")                                         \
-    X(bond_stretch_max, "1", HARD_AT_MOST, "largest stretch of a sheet's whole bonds")                                        \
+    X(bond_stretch_max, "1", HARD_AT_MOST, "largest strain of a sheet's whole bonds: length over that at rest, less 1")                                        \
     X(damage_mean, "1", HARD_AT_MOST, "mean damage, or share of broken bonds, at the end")                                    \
     X(damage_max, "1", HARD_AT_MOST, "largest damage, or share of a particle's bonds that are broken")                        \
     X(broken_fraction, "1", HARD_AT_MOST, "share of broken particles at the end")                                             \

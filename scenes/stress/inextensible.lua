@@ -14,7 +14,7 @@ local function grip(side)
 end
 
 local rope = { shape = s.box { min = { -0.15, 0, -0.15 }, max = { 0.15, 1, 0.15 } }, fibres = s.fibres.direction { 0, 1, 0 }, material = matter }
-local weight = { shape = s.box { min = { -0.3, -0.4, -0.3 }, max = { 0.3, 0, 0.3 } }, material = { density = 600, elastic = { E = 1e5, nu = 0.3 } } }
+local weight = { shape = s.box { min = { -0.3, -0.4, -0.3 }, max = { 0.3, 0, 0.3 } }, material = { density = 600, elastic = { E = 1e7, nu = 0.3 } } }
 local ring = { shape = s.tube { axis = "z", length = 0.3, outer = 0.5, inner = 0.25 }, fibres = s.fibres.circumferential { axis = "z" },
                velocity = function(x, y, z) return 2 * x, -2 * y, 0 end, material = matter }
 local thrown = p.variant == "wall" and { 0, -3, 0 } or p.variant == "random" and function(x, y, z) return x, -y, 0 end or nil
@@ -26,7 +26,7 @@ return s.scene {
   solids  = v == "rope" and { rope, weight } or v == "loop" and { ring } or { block },
   grips   = v == "rope" and { { shape = s.box { min = { -9, 0.9, -9 }, max = { 9, 2, 9 } } } } or v == "gripped" and { grip(-1), grip(1) } or nil,
   walls   = v == "wall" and { { point = { 0, 0, 0 }, normal = "y", contact = "slip" } } or nil,
-  expect  = v == "rope" and { energy_gain = 0.02, fibre_stretch_max = 1.01, fibre_stretch_min = 0.95, speed_max = 1 }
+  expect  = v == "rope" and { energy_gain = 0.02, low_y = -0.4, spread = 1.002, speed_max = 1 }
          or v == "gripped" and { speed_max = 30, fibre_stretch_max = 2, determinant_min = 0.1, steps = 50,
                                known_limit = "grips that pull an inextensible fibre at both ends: tension and steps have no bound; docs/stress.md" }
          or { energy_gain = 0.02, speed_max = 30, fibre_stretch_max = 1.05, fibre_stretch_min = v == "random" and 0.5 or 0.9, determinant_min = 0.2 },

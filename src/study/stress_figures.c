@@ -50,11 +50,15 @@ static double last(const run_rows *rows, row_name name) {
     return rows->row[name].count > 0 ? rows->row[name].y[rows->row[name].count - 1] : NAN;
 }
 
+/* A figure that is not a number stays one: it is within no bounds. */
+static double larger(double a, double b) {
+    return isnan(a) || isnan(b) ? NAN : fmax(a, b);
+}
+
 static double most(const run_rows *rows, row_name name, double sign) {
-    double found = NAN;
-    for (int k = 0; k < rows->row[name].count; k++)
-        if (!(sign * found >= sign * rows->row[name].y[k])) found = rows->row[name].y[k];
-    return found;
+    double found = rows->row[name].count > 0 ? -HUGE_VAL : NAN;
+    for (int k = 0; k < rows->row[name].count; k++) found = larger(found, sign * rows->row[name].y[k]);
+    return sign * found;
 }
 
 static double stored(const run_rows *rows, int k) {
@@ -63,6 +67,7 @@ static double stored(const run_rows *rows, int k) {
 
 /* Of nothing, no change is none; any other is all. */
 static double share(double change, double whole) {
+    if (isnan(change) || isnan(whole)) return NAN;
     return whole > 0 ? change / whole : change > 0 ? HUGE_VAL : 0;
 }
 
@@ -72,11 +77,11 @@ static void take_energies(const run_rows *rows, double *value) {
         double inner = at(rows, ROW_KINETIC, k) + stored(rows, k);
         double balance = inner + at(rows, ROW_GRAVITATIONAL, k) - at(rows, ROW_WORK, k);
         if (k == 0) start = balance;
-        high = fmax(high, fabs(inner));
-        highest = fmax(highest, inner);
-        store = fmax(store, stored(rows, k));
-        gain = fmax(gain, balance - start);
-        drift = fmax(drift, fabs(balance - start));
+        high = larger(high, fabs(inner));
+        highest = larger(highest, inner);
+        store = larger(store, stored(rows, k));
+        gain = larger(gain, balance - start);
+        drift = larger(drift, fabs(balance - start));
     }
     int end = rows->count - 1;
     value[HARD_energy_gain] = share(gain, high);
@@ -95,8 +100,8 @@ static void take_momenta(const run_rows *rows, const double gravity[3], double *
             twist += pow(at(rows, ROW_ANGULAR + (row_name)c, k) - at(rows, ROW_ANGULAR + (row_name)c, 0), 2);
             if (k == 0) spin += pow(at(rows, ROW_ANGULAR + (row_name)c, 0), 2);
         }
-        drift = fmax(drift, sqrt(change));
-        turn = fmax(turn, sqrt(twist));
+        drift = larger(drift, sqrt(change));
+        turn = larger(turn, sqrt(twist));
     }
     value[HARD_momentum_drift] = share(drift, scale);
     value[HARD_angular_drift] = share(turn, sqrt(spin));
@@ -115,7 +120,7 @@ static void take_rows(const run_rows *rows, double *value) {
     value[HARD_broken_fraction] = last(rows, ROW_BROKEN);
     const run_curve *heat = &rows->row[ROW_DIFFUSED], *step = &rows->row[ROW_STEP];
     for (int k = 0; k < heat->count; k++)
-        value[HARD_diffused_drift] = fmax(k ? value[HARD_diffused_drift] : 0, share(fabs(heat->y[k] - heat->y[0]), fabs(heat->y[0])));
+        value[HARD_diffused_drift] = larger(k ? value[HARD_diffused_drift] : 0, share(fabs(heat->y[k] - heat->y[0]), fabs(heat->y[0])));
     double first = NAN, least = NAN;
     for (int k = 0; k < step->count; k++) {
         if (!(step->y[k] > 0) || !isfinite(step->y[k])) continue; /* frame 0 has none */

@@ -175,6 +175,17 @@ def workbench_sweep(screen):
     screen.keys("Right", "Down")
 
 
+@shot(120, 32, start="")
+def workbench_stress(screen):
+    screen.wait(r"\[Scenes\]")
+    do(screen, "screen stress")
+    screen.wait(r"not run")
+    do(screen, "stress.run broken cfl contrast crush directions domain inversion sheet_crumple")
+    screen.wait("The hard cases have ended", patience=120)
+    for _ in range(13):
+        screen.keys("Down")
+
+
 def fill_library(sunder, home):
     """Makes the sixteen runs in the ledger of `home`, once for all pictures."""
     os.makedirs(f"{home}/sweeps", exist_ok=True)

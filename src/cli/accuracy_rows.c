@@ -18,6 +18,14 @@ static void row_number(FILE *out, double value) {
     else fputc(',', out);
 }
 
+/* What is beyond the study's own settings, as `sunder run` takes it. */
+static void print_settings(const accuracy_study *s, int axis, int level, FILE *out) {
+    const axis_level *l = &s->axes[axis].level[level];
+    if (s->run_of[axis][level] == 0) return;
+    for (int i = 0; i < l->settings; i++) fprintf(out, "%s--set %s=%s", i ? " " : "", l->key[i], l->text[i]);
+    if (l->precision != s->options.precision) fprintf(out, "%s--precision f%d", l->settings ? " " : "", l->precision);
+}
+
 static void print_row(const accuracy_study *s, int axis, int level, FILE *out) {
     const accuracy_point *p = &s->results[axis].point[level];
     const accuracy_run *run = &s->runs[s->run_of[axis][level]];
@@ -36,13 +44,14 @@ static void print_row(const accuracy_study *s, int axis, int level, FILE *out) {
     row_number(out, s->results[axis].worst_order);
     row_number(out, level == s->results[axis].reference ? s->results[axis].worst_left : NAN);
     row_number(out, p->estimate);
-    fprintf(out, ",%d,%s", p->frontier, other);
+    fprintf(out, ",%d,%s,%d,", p->frontier, other, s->axes[axis].unasked);
+    print_settings(s, axis, level, out);
     for (int m = 0; m < s->measure_count; m++) row_number(out, p->error[m]);
     fputc('\n', out);
 }
 
 void accuracy_print_rows(const accuracy_study *s, FILE *out) {
-    fputs("axis,key,value,role,status,run,particles,steps,h,step_s,wall_s,predicted_s,error,error_to_crack,order,left,estimate,frontier,dominated_by", out);
+    fputs("axis,key,value,role,status,run,particles,steps,h,step_s,wall_s,predicted_s,error,error_to_crack,order,left,estimate,frontier,dominated_by,usual,settings", out);
     for (int m = 0; m < s->measure_count; m++) fprintf(out, ",%s", s->measures[m].name);
     fputc('\n', out);
     for (int a = 0; a < s->axis_count; a++)

@@ -16,7 +16,7 @@ typedef struct accuracy_options {
     const char *scene, *recipe;
     const script_setting *settings; /* [setting_count] */
     int setting_count;
-    const char *const *axes;        /* [axis_count] words; none: all that are taken unasked */
+    const char *const *axes;        /* [axis_count] words, "all" among them; none: those that are taken unasked */
     const char *const *measures;    /* [measure_count] names; none: the usual ones */
     int axis_count, measure_count;
     int levels;                     /* of an axis, 2 to AXIS_LEVELS */

@@ -150,7 +150,7 @@ static double between_times(const accuracy_run *a, const accuracy_run *b) {
 static double between_normals(const accuracy_run *a, const accuracy_run *b, int measure, int last) {
     double product = 0;
     for (int c = 0; c < 3; c++) product += a->curve[measure][c][last] * b->curve[measure][c][last];
-    return acos(fmin(1, fabs(product))) / M_PI_2; /* NAN where one has no crack */
+    return isnan(product) ? NAN : acos(fmin(1, fabs(product))) / M_PI_2; /* NAN: one has no crack */
 }
 
 static double between_records(const record *a, const record *b, double *count) {

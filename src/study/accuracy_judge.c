@@ -7,7 +7,7 @@
 
 static const double FASTER = 0.97;       /* times closer than that are the same */
 static const double SAME_ERROR = 1.1;    /* so are errors */
-static const double ORDER_MOST = 8, ORDER_LEAST = 0.05;
+static const double ORDER_MOST = 8, ORDER_LEAST = 0.5; /* beyond these the levels are not yet where an order shows */
 
 static bool made(const accuracy_run *run) {
     return run->state == ACCURACY_DONE || run->state == ACCURACY_BEFORE;

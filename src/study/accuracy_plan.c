@@ -145,6 +145,10 @@ static status choose_axes(accuracy_study *s, report *r) {
     const accuracy_options *o = &s->options;
     bool keep[AXES] = {0};
     for (int i = 0; i < o->axis_count; i++) {
+        if (strcmp(o->axes[i], "all") == 0) {
+            for (int a = 0; a < s->axis_count; a++) keep[a] = true;
+            continue;
+        }
         int found = accuracy_axis_find(s->axes, s->axis_count, o->axes[i], r);
         if (found < 0) return r->code;
         keep[found] = true;

@@ -2,6 +2,7 @@
 #include "tui/runs.h"
 
 #include "base/memory.h"
+#include "tui/chart_draw.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -102,32 +103,15 @@ status runs_logarithmic(tui_app *app, const char *argument, report *r) {
 
 /* ---- drawing ----------------------------------------------------------------------------------------------------- */
 
-/* Colours far apart from each other on dark and light, for terminals of 256, 16 or 8. */
-static tui_ink curve_ink(tui_app *app, int curve) {
-    static const short wide[] = {39, 208, 170, 71, 203, 141, 178, 80, 167, 109, 245, 133}, narrow[] = {6, 3, 5, 2, 1, 4};
-    if (app->theme.colours == 0) return app->theme.styles[STYLE_TEXT];
-    int colour = app->theme.colours >= 256 ? wide[curve % 12] : narrow[curve % 6];
-    return theme_pair(&app->theme, colour, -1);
-}
-
 static int draw_legend(tui_app *app, const runs_state *s, tui_area area) {
     int rows = s->curve_count > 1 ? (s->curve_count < area.height / 3 ? s->curve_count : area.height / 3) : 0;
     for (int i = 0; i < rows; i++) {
         char text[RUNS_NAME + 8];
         snprintf(text, sizeof text, "%c  %s%s", view_chart_letter(i), s->shown[i], s->curves[i].count ? "" : "  (nothing)");
-        draw_ink(&app->theme, area, area.height - rows + i, 2, curve_ink(app, i), text);
+        draw_ink(&app->theme, area, area.height - rows + i, 2, chart_ink(app, i), text);
         if (i == rows - 1 && rows < s->curve_count) draw_format(&app->theme, area, area.height - 1, 32, STYLE_DIM, "and %d more", s->curve_count - rows);
     }
     return rows;
-}
-
-static void draw_cells(tui_app *app, tui_area area, const view_chart_options *o, const view_chart_cell *cells) {
-    for (int row = 0; row < o->height; row++)
-        for (int column = 0; column < o->width; column++) {
-            const view_chart_cell *cell = &cells[row * o->width + column];
-            if (cell->glyph == ' ') continue;
-            draw_glyph(area, row, column, cell->series < 0 ? app->theme.styles[STYLE_DIM] : curve_ink(app, cell->series), cell->glyph);
-        }
 }
 
 void runs_draw_plot(tui_app *app, runs_state *s, tui_area area) {
@@ -145,6 +129,6 @@ void runs_draw_plot(tui_app *app, runs_state *s, tui_area area) {
     if (!cells) return;
     for (int i = 0; i < s->curve_count; i++) series[i] = (view_chart_series){s->curves[i].x, s->curves[i].y, s->curves[i].count, against};
     view_chart(series, s->curve_count, &o, cells);
-    draw_cells(app, body, &o, cells);
+    chart_draw(app, body, &o, cells);
     memory_free(cells, n * sizeof *cells);
 }

@@ -37,6 +37,9 @@ typedef struct scenes_state {
 /* The scene under the cursor, NULL when none is shown. */
 const library_scene *scenes_chosen(const scenes_state *s);
 
+/* The scene under the cursor with its recipe, settings and precision, as `start` takes it. False: none is shown, or it does not fit. */
+bool scenes_words(const scenes_state *s, char out[START_TEXT]);
+
 /* Rows of settings: the recipe and the scene's parameters. */
 int scenes_rows(const scenes_state *s);
 

@@ -22,7 +22,7 @@ const library_scene *scenes_chosen(const scenes_state *s) {
 
 /* ---- what is chosen ---------------------------------------------------------------------------------------------- */
 
-static bool words_of(const scenes_state *s, char out[START_TEXT]) {
+bool scenes_words(const scenes_state *s, char out[START_TEXT]) {
     const library_scene *chosen = scenes_chosen(s);
     script_setting settings[SCENES_SETTINGS];
     char text[SCENES_SETTINGS][SCENES_SETTING];
@@ -281,7 +281,7 @@ static status start(tui_app *app, const char *argument, report *r) {
     char words[START_TEXT];
     (void)argument;
     if (!scenes_chosen(s)) return report_set(r, STATUS_INPUT, "There is no scene to start.");
-    if (!words_of(s, words)) return report_set(r, STATUS_INPUT, "Too many settings for one run.");
+    if (!scenes_words(s, words)) return report_set(r, STATUS_INPUT, "Too many settings for one run.");
     if (!app->ended) {
         app_ask(app, "start", words, 0, "Stop the run that is on and start %s?", scenes_chosen(s)->name);
         return STATUS_OK;
@@ -400,7 +400,7 @@ static void tick(tui_app *app, void *state, double now) {
     bool busy = preview_busy(s->preview);
     if (busy != s->busy) app->dirty = true;
     s->busy = busy;
-    if (s->ask_at == 0 || now < s->ask_at || !words_of(s, words)) return;
+    if (s->ask_at == 0 || now < s->ask_at || !scenes_words(s, words)) return;
     const preview_facts *f = &s->facts;
     bool known = strcmp(f->words, words) == 0 && (f->loaded || f->failed);
     /* A plan takes every core for a moment: not while a run is on, unless it is asked for. */

@@ -84,7 +84,7 @@ const tui_screen *tui_screen_find(const char *name);
 void *screen_state(tui_app *app, const tui_screen *screen, report *r);
 
 /* Every screen is one line here: a constant tui_screen named screen_NAME in a file of its own. */
-#define TUI_SCREENS(X) X(scenes) X(run) X(compare) X(runs) X(sweep) X(stress) X(console)
+#define TUI_SCREENS(X) X(scenes) X(run) X(compare) X(runs) X(sweep) X(accuracy) X(stress) X(console)
 
 #define TUI_SCREEN_DECLARE(name) extern const tui_screen screen_##name;
 TUI_SCREENS(TUI_SCREEN_DECLARE)

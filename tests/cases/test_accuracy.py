@@ -1,0 +1,204 @@
+#!/usr/bin/env python3
+"""sunder accuracy: axes made from the effects' tables, orders that are known, runs that are not made twice, budgets, interruptions.
+
+Usage: test_accuracy.py SUNDER SOURCE_DIR [NAME...]   Each test works in a folder and with a ledger of its own.
+"""
+import csv, json, os, shutil, signal, sqlite3, subprocess, sys, tempfile, time
+
+SUNDER, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+PULL = os.path.join(SOURCE, "scenes/solid/tube_pull.lua")
+SMALL = ["--set", "particles=500", "--set", "break_stretch=0.02", "--set", "pull=0.6", "--frames", "4"]
+failures, checks = [], 0
+
+# Linear tetrahedra under v += Δt f/m, x += Δt v. Velocities stand half a step beside places, so that energies are of first order in Δt;
+# places themselves are of second (the leapfrog of Störmer and Verlet).
+BAR = """local s = require "sunder"
+local p = s.params { particles = 200, duration = 0.5, fps = 10, dt = 5e-3 }
+return s.scene { title = "Bar", solids = { { shape = s.box { min = { -1, -0.2, -0.2 }, max = { 1, 0.2, 0.2 } }, discretisation = "tetrahedra",
+  material = { density = 1, elastic = { E = 10, nu = 0.3 } },
+  velocity = function(x, y, z) return 0.05 * math.sin(math.pi * x / 2), 0, 0 end } } }
+"""
+
+# The same of bonds, which one end also warms.
+FILM = """local s = require "sunder"
+local p = s.params { dx = 0.1, duration = 1, fps = 10, dt = 5e-3 }
+return s.scene { title = "Film", sheets = { { shape = s.rectangle { size = { 2, 1 } }, thickness = 0.1,
+  material = { density = 1, linear = { E = 10, nu = 0.3 }, diffusion = { k = 0.05 } },
+  sources = { { value = 1, shape = s.box { center = { 1, 0, 0 }, size = { 1, 3, 3 } } } },
+  velocity = function(x, y, z) return 0.05 * math.sin(math.pi * x / 2), 0, 0 end } } }
+"""
+
+
+def check(condition, text):
+    global checks
+    checks += 1
+    if not condition:
+        failures.append(text)
+        print("  failed:", text)
+
+
+class Box:
+    def __enter__(self):
+        self.folder = tempfile.mkdtemp(prefix="sunder-accuracy-")
+        self.db = os.path.join(self.folder, "ledger.db")
+        self.environment = dict(os.environ, SUNDER_DB=self.db, XDG_DATA_HOME=os.path.join(self.folder, "data"))
+        return self
+
+    def __exit__(self, *_):
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def write(self, name, text):
+        path = os.path.join(self.folder, name)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
+    def call(self, *arguments, code=0):
+        done = subprocess.run([SUNDER, *arguments], cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=300, check=False)
+        check(done.returncode == code, f"{arguments}: exit code {done.returncode}, expected {code}: {done.stderr[-400:]}")
+        return done
+
+    def study(self, *arguments):
+        done = self.call("accuracy", *arguments, "--threads", "1", "--quiet", "--json")
+        return json.loads(done.stdout)
+
+    def sql(self, query):
+        with sqlite3.connect(self.db) as connection:
+            return connection.execute(query).fetchall()
+
+
+def axis(study, name):
+    return next(a for a in study["axes"] if a["name"] == name)
+
+
+def names(study):
+    return [a["name"] for a in study["axes"] if a["levels"]]
+
+
+def orders_are_those_of_the_integrator():
+    with Box() as box:
+        study = box.study(box.write("bar.lua", BAR), "--precision", "f64", "--axis", "step", "--levels", "4")
+        step = axis(study, "step")
+        check(abs(step["orders"]["energy"] - 1) < 0.1, f"energies are of first order in the step: {step['orders']}")
+        check(abs(step["orders"]["position"] - 2) < 0.25, f"places of second: {step['orders']}")
+        errors = [level["errors"]["energy"] for level in step["levels"]]
+        check(len(errors) == 4 and errors[-1] == 0 and errors == sorted(errors, reverse=True), f"finer is better: {errors}")
+        sizes = [level["h"] for level in step["levels"]]
+        check(all(abs(a / b - 2) < 1e-6 for a, b in zip(sizes, sizes[1:])), f"steps are halved: {sizes}")
+        # An error that goes with h is 4, 2, 1 times what is left, less the reference's own: 7/3 from the coarsest to the next but one.
+        check(abs(errors[0] / errors[1] - 7 / 3) < 0.3, f"as the order has it: {errors}")
+        check(abs(step["left"]["energy"] / errors[2] - 1) < 0.15, f"the finest lacks what it took away: {step['left']}, {errors}")
+        film = axis(box.study(box.write("film.lua", FILM), "--precision", "f64", "--axis", "step", "--levels", "4"), "step")
+        check(abs(film["orders"]["energy"] - 1) < 0.1 and abs(film["orders"]["position"] - 2) < 0.25, f"the sheet's are the same: {film['orders']}")
+        check(film["levels"][0]["errors"]["diffused"] > 0, "what diffuses is compared")
+
+
+def precision_is_round_off():
+    with Box() as box:
+        study = box.study(PULL, *SMALL, "--set", "variant=elastic_only", "--axis", "precision")
+        own, fine = axis(study, "precision")["levels"]
+        check(own["own"] and own["value"] == "f32" and fine["value"] == "f64" and fine["reference"], "f64 is finer than f32")
+        check(0 < own["errors"]["position"] < 1e-5, f"places differ by round-off: {own['errors']}")
+        check(0 < own["error"] < 1e-3, f"energies too: {own}")
+        check([a["name"] for a in study["axes"]] == ["precision"], "no other axis than that asked for")
+
+
+def axes_come_from_the_effects():
+    with Box() as box:
+        bar = box.write("bar.lua", BAR)
+        check(names(box.study(bar, "--list", "--axis", "all")) == ["resolution", "step", "precision"], "a bar of tetrahedra has no kernels and no damage")
+        elastic = names(box.study(PULL, *SMALL, "--set", "variant=elastic_only", "--list"))
+        check(elastic == ["resolution", "step", "precision", "kernel"], f"no axis of damage without damage: {elastic}")
+        full = names(box.study(PULL, *SMALL, "--list"))
+        check("damage.form" in full and "laplacian" in full and "damage.tolerance" not in full, f"with damage, in its explicit form: {full}")
+        implicit = box.study(PULL, *SMALL, "--set", "form=implicit", "--list")
+        check([level["value"] for level in axis(implicit, "damage.tolerance")["levels"]] == ["0.001", "0.0001", "1e-05"], "the implicit form has a tolerance")
+        check(box.sql("SELECT count(*) FROM runs") == [(0,)], "who only looks runs nothing")
+        done = box.call("accuracy", bar, "--axis", "resolutoin", code=2)
+        check("resolution" in done.stderr and "did you mean" in done.stderr, f"the nearest axis: {done.stderr}")
+        done = box.call("accuracy", bar, "--axis", "laplacian", code=2)
+        check("an axis of this scene: resolution step precision" in done.stderr, f"axes that it has: {done.stderr}")
+        check("energy" in box.call("accuracy", bar, "--measure", "enery", code=2).stderr, "the nearest measure")
+        box.call("accuracy", code=2)
+        box.call("accuracy", bar, "--levels", "1", code=2)
+        box.call("accuracy", os.path.join(box.folder, "nowhere.lua"), code=2)
+
+
+def runs_are_not_made_twice():
+    with Box() as box:
+        words = [PULL, *SMALL, "--axis", "resolution", "--axis", "kernel"]
+        first = box.study(*words)
+        check(first["done"] == 4 and first["done_before"] == 0 and first["failed"] == 0, f"the scene's own, two beside it, one kernel: {first}")
+        check(box.sql(f"SELECT count(*) FROM tags WHERE tag = '{first['tag']}'") == [(4,)], "tagged")
+        again = box.study(*words)
+        check(again["done"] == 0 and again["done_before"] == 4, "nothing is made again")
+        check(box.sql("SELECT count(*) FROM runs") == [(4,)], "four runs in the ledger")
+        for a, b in zip(first["axes"], again["axes"]):
+            check([level["errors"] for level in a["levels"]] == [level["errors"] for level in b["levels"]], "the same errors")
+            check([level["step_s"] for level in a["levels"]] == [level["step_s"] for level in b["levels"]], "the same seconds")
+        listed = box.call("runs", "list", "--where", "tags LIKE '%accuracy:tube_pull%'", "--json")
+        check(len(json.loads(listed.stdout)["runs"]) == 4, "found by their tag")
+        together = box.study(PULL, *SMALL, "--axis", "step", "-j", "2")
+        check(not together["times_comparable"] and together["done"] == 2 and together["done_before"] == 1, f"two at a time: {together['done']}")
+        alone = box.study(PULL, *SMALL, "--axis", "step")
+        check(alone["times_comparable"] and alone["done"] == 2, "whose times are not taken for a study's")
+        out = box.study(PULL, *SMALL, "--axis", "precision", "--out", os.path.join(box.folder, "kept"))
+        check(sorted(os.listdir(os.path.join(box.folder, "kept"))) == ["precision-f64"] and out["done"] == 1, "a folder of one's choice")
+
+
+def a_budget_takes_the_finest_away():
+    with Box() as box:
+        words = [PULL, *SMALL, "--axis", "resolution", "--levels", "9", "--list"]
+        whole = box.study(*words)
+        less = box.study(*words, "--budget", str(whole["predicted_s"] / 2))
+        values = [[float(level["value"]) for level in axis(s, "resolution")["levels"] if level["status"] == "not started"] for s in (whole, less)]
+        check(max(values[1]) < max(values[0]), f"the finest level is left out: {values}")
+        check(any("left out by the budget: particles" in note for note in less["notes"]), f"and that is said: {less['notes']}")
+        check(less["predicted_s"] <= whole["predicted_s"] / 2, "the budget holds")
+        done = box.call("accuracy", *words, "--budget", "1e-9", code=2)
+        check("--budget: expected at least" in done.stderr, f"one that not even the scene's own run fits: {done.stderr}")
+
+
+def an_interrupted_study_goes_on():
+    with Box() as box:
+        words = [PULL, *SMALL[:-1], "30", "--axis", "resolution", "--threads", "1"]
+        process = subprocess.Popen([SUNDER, "accuracy", *words], cwd=box.folder, env=box.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        for line in process.stdout:
+            if line.startswith("2/3  started"):
+                break
+        while box.sql("SELECT count(*) FROM runs") < [(2,)]:
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        rest = process.stdout.read()
+        check(process.wait() == 130, f"interrupted: {rest[-200:]}")
+        states = [row[0] for row in box.sql("SELECT status FROM runs ORDER BY run")]
+        check(states == ["done", "interrupted"], f"what is done is kept, the third is not begun: {states}")
+        study = box.study(*words)
+        check(study["done"] == 2 and study["done_before"] == 1, "it goes on from there")
+
+
+def tables_for_people_and_programs():
+    with Box() as box:
+        table = os.path.join(box.folder, "levels.csv")
+        done = box.call("accuracy", PULL, *SMALL, "--axis", "precision", "--axis", "kernel", "--csv", table, "--threads", "1")
+        check(max(len(line) for line in done.stdout.splitlines() if " is faster" not in line and " times as long" not in line) <= 80, "80 columns")
+        for word in ("precision:", "kernel:", "error against seconds", "worth their time", "from f32 to f64 takes"):
+            check(word in done.stdout, f"'{word}' is said:\n{done.stdout}")
+        with open(table, encoding="utf-8") as file:
+            rows = list(csv.DictReader(line for line in file if line[0] != "#"))
+        check([row["value"] for row in rows] == ["f32", "f64", "quadratic", "cubic"], "a row a level")
+        check([row["settings"] for row in rows] == ["", "--precision f64", "", "--set kernel=cubic"], "how each is run")
+        check(all(float(row["step_s"]) > 0 and len(row["run"]) > 10 for row in rows), "with seconds and run")
+
+
+TESTS = [orders_are_those_of_the_integrator, precision_is_round_off, axes_come_from_the_effects, runs_are_not_made_twice, a_budget_takes_the_finest_away,
+         an_interrupted_study_goes_on, tables_for_people_and_programs]
+
+for test in TESTS:
+    if len(sys.argv) > 3 and test.__name__ not in sys.argv[3:]:
+        continue
+    start, before = time.time(), len(failures)
+    test()
+    print(f"{'ok  ' if len(failures) == before else 'FAIL'} {test.__name__}  {time.time() - start:.1f} s", flush=True)
+print(f"{checks} checks, {len(failures)} failed")
+sys.exit(1 if failures else 0)

@@ -49,11 +49,29 @@ static void print_parameters(const effect *e) {
     putchar('\n');
 }
 
+/* What `sunder accuracy` makes axes of. */
+static void print_axes(const effect *e) {
+    bool any = false;
+    for (int i = 0; i < e->parameter_count; i++) {
+        const parameter *p = &e->parameters[i];
+        const accuracy_rule *a = &p->accuracy;
+        if (a->kind == ACCURACY_NONE) continue;
+        printf("%s`%s` (", any ? ", " : "Trades accuracy for time: ", p->key);
+        if (a->kind == ACCURACY_FACTOR) printf("finer: times %g", a->finer);
+        else if (a->kind == ACCURACY_DIFFERENCE) printf("finer: %+g", a->finer);
+        else printf("finest: %s", p->choices[a->finer > 0 ? (int)p->maximum : 0]);
+        putchar(')');
+        any = true;
+    }
+    if (any) puts(".\n");
+}
+
 static void print_effect(const effect *e) {
     printf("## %s\n\n%s. %s; %s.\n\n", e->name, e->doc, e->scope == SCOPE_MATERIAL ? "Of a material" : "Of the scene", e->reference);
     if (e->needs) printf("Needs: %s.\n\n", e->needs);
     if (e->provides) printf("Provides: %s; a material has at most one effect that does.\n\n", e->provides);
     if (e->parameter_count > 0) print_parameters(e);
+    print_axes(e);
     if (e->field_count > 0) puts("| field | components | unit | in frames | |\n|---|---|---|---|---|");
     for (int i = 0; i < e->field_count; i++) {
         const effect_field *f = &e->fields[i];

@@ -100,6 +100,16 @@ static status try_plan(const accuracy_study *s, const scene *data, int precision
     return code;
 }
 
+/* A scene may refuse a level: particles beyond what its s.params allow, say. */
+static void leave_out(accuracy_study *s, accuracy_run *run, const report *why) {
+    char name[96], text[1600];
+    accuracy_run_name(s, (int)(run - s->runs), name);
+    report_format(why, text, sizeof text);
+    accuracy_note(s, "no %s: %.200s", name, text);
+    s->run_of[run->axis][run->level] = -1;
+    run->state = ACCURACY_LEFT_OUT;
+}
+
 /* Whether it was done before, and if not what it costs. A level that cannot even begin is a run that has failed. */
 static status plan_run(accuracy_study *s, int axis, int level, script_reports *reports) {
     report *r = &reports->items[0];
@@ -114,8 +124,10 @@ static status plan_run(accuracy_study *s, int axis, int level, script_reports *r
     o.settings = run->settings;
     o.setting_count = run->setting_count;
     script *from;
-    code = script_load(s->options.scene, &o, &from, reports);
-    if (code != STATUS_OK) return code;
+    if (script_load(s->options.scene, &o, &from, reports) != STATUS_OK) {
+        leave_out(s, run, r);
+        return STATUS_OK;
+    }
     sources_hash(from, run->hash);
     code = accuracy_find_past(s, run, r);
     probe found;
@@ -207,7 +219,9 @@ static status plan_own(accuracy_study *s, script_reports *reports) {
 /* A scene that says its sheets' spacing itself has no other resolution by what --set reaches. */
 static bool level_changes(const accuracy_study *s, int axis) {
     const accuracy_axis *a = &s->axes[axis];
-    if (a->same_particles) return true;
+    bool any = false;
+    for (int l = 0; l < a->count; l++) any |= s->run_of[axis][l] > 0;
+    if (a->same_particles || !any) return true;
     for (int l = 0; l < a->count; l++) {
         int run = s->run_of[axis][l];
         if (run > 0 && s->runs[run].state != ACCURACY_FAILED && s->runs[run].result.particles != s->runs[0].result.particles) return true;

@@ -186,6 +186,17 @@ def workbench_stress(screen):
         screen.keys("Down")
 
 
+@shot(140, 36, start="")
+def workbench_accuracy(screen):
+    screen.wait(r"\[Scenes\]")
+    do(screen, "screen accuracy")
+    do(screen, f"accuracy.choose {os.path.abspath(SCENES)}/solid/tube_pull.lua --set particles=3000 --set break_stretch=0.1 --set pull=0.4 --threads 1 --frames 36")
+    screen.wait(r"\[x\] resolution", patience=60)
+    screen.keys("r")
+    screen.wait("The study has ended", patience=300)
+    screen.keys("Down")
+
+
 def fill_library(sunder, home):
     """Makes the sixteen runs in the ledger of `home`, once for all pictures."""
     os.makedirs(f"{home}/sweeps", exist_ok=True)

@@ -26,18 +26,33 @@ static state_word describe(const tui_app *app) {
     }
 }
 
-/* The screens' names, the one in view marked; alone where all would leave no room for the run's title. */
+static int tab_width(const tui_screen *screen) {
+    return draw_width(screen->title) + 2;
+}
+
+/* Which screens' names fit beside the run's title: the one in view, those that Tab goes to next, and then those before it. */
+static void choose_tabs(const tui_app *app, int room, int *first, int *last) {
+    int count, used;
+    const tui_screen *const *list = tui_screens(&count);
+    for (*first = 0; *first < count - 1 && list[*first] != app->screen;) (*first)++;
+    *last = *first;
+    used = tab_width(list[*first]);
+    while (*last + 1 < count && used + tab_width(list[*last + 1]) <= room) used += tab_width(list[++*last]);
+    while (*first > 0 && used + tab_width(list[*first - 1]) <= room) used += tab_width(list[--*first]);
+}
+
+/* The screens' names, the one in view marked. */
 static int draw_screens(const tui_app *app, tui_area area, int column) {
     enum { TITLE = 16 };
-    int count, wanted = column + TITLE;
+    int count, first, last;
     const tui_screen *const *list = tui_screens(&count);
-    for (int i = 0; i < count; i++) wanted += draw_width(list[i]->title) + 2;
-    for (int i = 0; i < count; i++) {
+    choose_tabs(app, area.width - column - TITLE, &first, &last);
+    for (int i = first; i <= last; i++) {
         bool here = list[i] == app->screen;
-        if (!here && wanted > area.width) continue;
-        column = draw_text(&app->theme, area, 0, column, here ? STYLE_BAR_STRONG : STYLE_BAR, here ? "[" : " ");
+        const char *open = here ? "[" : i == first && i > 0 ? "<" : " ", *close = here ? "]" : i == last && i + 1 < count ? ">" : " ";
+        column = draw_text(&app->theme, area, 0, column, here ? STYLE_BAR_STRONG : STYLE_BAR, open);
         column = draw_text(&app->theme, area, 0, column, here ? STYLE_BAR_STRONG : STYLE_BAR, list[i]->title);
-        column = draw_text(&app->theme, area, 0, column, here ? STYLE_BAR_STRONG : STYLE_BAR, here ? "]" : " ");
+        column = draw_text(&app->theme, area, 0, column, here ? STYLE_BAR_STRONG : STYLE_BAR, close);
     }
     return column;
 }

@@ -1,10 +1,13 @@
-/* The ground floor: memory, reports, names, records, random numbers. */
+/* The ground floor: memory, reports, names, records, random numbers, loops on threads. */
 #include "base/memory.h"
 #include "base/names.h"
 #include "base/random.h"
 #include "base/record.h"
 #include "base/status.h"
+#include "base/threads.h"
 #include "check.h"
+
+#include <stdatomic.h>
 
 /* ---- memory -------------------------------------------------------------------------------------------------------
  */
@@ -366,6 +369,59 @@ static void random_numbers_are_fixed(void) {
     CHECK(random_mix(0) == UINT64_C(0xe220a8397b1dcdaf));
 }
 
+enum { ITEMS = 1000, ITEM_STAGES = 5, MOST_THREADS = 5 };
+typedef struct visits {
+    atomic_int times[ITEMS], done[ITEM_STAGES], at_work[MOST_THREADS], shared;
+    int stage_of[ITEMS], sizes[ITEM_STAGES];
+} visits;
+
+/* Waits for all items of the stage below: that they have been taken by others must be enough. */
+static void visit(void *context, int64_t i, int worker) {
+    visits *v = context;
+    int stage = v->stage_of[i];
+    if (atomic_fetch_add(&v->at_work[worker], 1) != 0) atomic_fetch_add(&v->shared, 1);
+    for (int spins = 0; stage > 0 && atomic_load(&v->done[stage - 1]) < v->sizes[stage - 1]; spins++) thread_relax(spins);
+    atomic_fetch_add(&v->times[i], 1);
+    atomic_fetch_sub(&v->at_work[worker], 1);
+    atomic_fetch_add(&v->done[stage], 1);
+}
+
+static bool each_once(const visits *v, int count) {
+    bool once = atomic_load(&v->shared) == 0;
+    for (int i = 0; i < ITEMS; i++) once &= atomic_load(&v->times[i]) == (i < count);
+    return once;
+}
+
+/* Uneven on purpose: some workers have nothing of some stages, so that others' stretches are helped with. */
+static void set_stages(visits *v, int threads, int32_t *bounds) {
+    int32_t at = 0;
+    for (int stage = 0; stage < ITEM_STAGES; stage++)
+        for (int w = 0; w <= threads; w++) {
+            bounds[stage * (threads + 1) + w] = at;
+            int size = w == threads ? 0 : (stage + w) % 3 * 13;
+            for (int i = 0; i < size; i++) v->stage_of[at++] = stage;
+            v->sizes[stage] += size;
+        }
+}
+
+static void loops_visit_each_item_once(void) {
+    for (int guests = 0; guests < 2; guests++) {
+        if (guests) parallel_make_room();
+        for (int threads = 1; threads <= MOST_THREADS; threads++)
+            for (int grain = 1; grain <= 64; grain *= 8) {
+                visits v = {.sizes = {0}};
+                parallel_for(threads, ITEMS - grain, grain, visit, &v);
+                CHECK(each_once(&v, ITEMS - grain));
+                visits staged = {.sizes = {0}};
+                int32_t bounds[ITEM_STAGES * (MOST_THREADS + 1)];
+                set_stages(&staged, threads, bounds);
+                parallel_stages(threads, ITEM_STAGES, bounds, visit, &staged);
+                CHECK(each_once(&staged, bounds[ITEM_STAGES * (threads + 1) - 1]));
+            }
+        if (guests) parallel_take_room();
+    }
+}
+
 int main(void) {
     RUN(blocks_are_zeroed_and_aligned);
     RUN(live_and_peak_bytes);
@@ -386,6 +442,7 @@ int main(void) {
     RUN(random_numbers_are_uniform);
     RUN(random_numbers_are_unrelated);
     RUN(random_numbers_are_fixed);
+    RUN(loops_visit_each_item_once);
     CHECK(memory_live_bytes() == 0);
     return check_finish();
 }

@@ -3,6 +3,7 @@
 #include "session/session.h"
 
 #include "base/memory.h"
+#include "store/frames.h"
 
 #include <ftw.h>
 #include <sys/stat.h>
@@ -259,6 +260,54 @@ static void a_run_that_goes_on_is_not_resumed_beside_itself(void) {
     session_snapshot_free(&p);
 }
 
+/* Files are written on a thread of their own while the next frame is made. */
+static void a_frame_that_is_shown_is_on_the_disk(void) {
+    session_snapshot p = {0};
+    session_options o = small_run();
+    o.keep = 0;
+    o.frames = 20;
+    int64_t seen = 0, missing = 0, last = -1;
+    session *s = begin(&o);
+    CHECK(s != NULL);
+    if (!s) return;
+    for (bool ended = false; !ended;) {
+        ended = session_wait(s, 0);
+        session_poll(s, &p);
+        if (p.history_count == 0 || p.frame == last) continue;
+        last = p.frame;
+        seen++;
+        missing += !frame_exists(p.output, last) || !checkpoint_exists(p.output, last);
+    }
+    CHECK(p.frame == 20 && seen > 1 && missing == 0);
+    session_destroy(s);
+    session_snapshot_free(&p);
+}
+
+static void a_run_stopped_between_checkpoints_leaves_one(void) {
+    session_snapshot p = {0};
+    session_options o = small_run();
+    o.start_paused = true;
+    o.checkpoint_every = 100;
+    session *s = begin(&o);
+    CHECK(s != NULL);
+    if (!s) return;
+    session_run_to(s, 3);
+    CHECK(wait_for(s, &p, 3, SESSION_PAUSED) && !checkpoint_exists(p.output, 3));
+    session_stop(s);
+    CHECK(session_wait(s, -1) && checkpoint_exists(p.output, 3));
+    session_destroy(s);
+    session_options again = small_run();
+    again.resume = p.run_id;
+    again.frames = -1;
+    session *rest = begin(&again);
+    CHECK(rest && session_wait(rest, -1));
+    session *whole = begin((const session_options[]){small_run()});
+    CHECK(whole && session_wait(whole, -1) && rest && strcmp(hash_of(rest), hash_of(whole)) == 0);
+    session_destroy(rest);
+    session_destroy(whole);
+    session_snapshot_free(&p);
+}
+
 int main(void) {
     snprintf(folder, sizeof folder, "/tmp/sunder-session-XXXXXX");
     if (!mkdtemp(folder)) return 1;
@@ -270,6 +319,8 @@ int main(void) {
     RUN(steps_tell_where_their_time_goes);
     RUN(recipes_resolve_to_the_values_that_were_tuned);
     RUN(a_run_that_goes_on_is_not_resumed_beside_itself);
+    RUN(a_frame_that_is_shown_is_on_the_disk);
+    RUN(a_run_stopped_between_checkpoints_leaves_one);
     nftw(folder, remove_one, 16, FTW_DEPTH | FTW_PHYS);
     return check_finish();
 }

@@ -1,11 +1,13 @@
 /* The cubes of a flow: which there are, what of each is inside, and the integrals over that. */
 #include "geom/fibre_flow_cells.h"
 
+#include "base/memory.h"
+#include "base/threads.h"
 #include "geom/vector.h"
 
 #include <string.h>
 
-enum { PARTS = 5 /* samples along each side of a cut cube */, BLOCK = 4, FIRST_CAPACITY = 1024 };
+enum { PARTS = 5 /* samples along each side of a cut cube */, BLOCK = 4, FIRST_CAPACITY = 1024, BATCH = 4096 /* cubes */ };
 
 static const double NODE_LIMIT = 8e6;
 
@@ -237,25 +239,70 @@ static bool keep_cell(flow_cells *c, const flow_cell *made) {
     return true;
 }
 
-/* Adds the cube with corner 0 at a node, when it holds part of the flow. */
-static bool add_cube(const flow_builder *b, const int at[3]) {
+/* A cube as it was found to be: worked out on any thread, kept in the cubes' order. */
+typedef enum cube_kind { CUBE_LEFT_OUT, CUBE_WHOLE, CUBE_CUT } cube_kind;
+typedef struct made_cube {
+    cube_kind kind;
+    flow_cell cell;
+    double matrix[64]; /* of a cut one */
+} made_cube;
+
+/* Works out the cube with corner 0 at a node. */
+static void make_cube(const flow_builder *b, const int at[3], made_cube *made) {
     flow_cells *c = b->cells;
-    double nearest = HUGE_VAL, furthest = -HUGE_VAL, distance[8], x[3], matrix[64];
+    double nearest = HUGE_VAL, furthest = -HUGE_VAL, distance[8], x[3];
+    made->kind = CUBE_LEFT_OUT;
     for (int k = 0; k < 8; k++) {
         distance[k] = b->distance[flow_node(c, at[0] + (k >> 2), at[1] + (k >> 1 & 1), at[2] + (k & 1))];
         nearest = fmin(nearest, distance[k]), furthest = fmax(furthest, distance[k]);
     }
-    if (nearest > HALF_DIAGONAL) return true;
+    if (nearest > HALF_DIAGONAL) return;
     for (int i = 0; i < 3; i++) x[i] = c->origin[i] + c->spacing * at[i];
     bool near[FLOW_SIDES];
-    if (within_held(b, x, near)) return true;
-    flow_cell cell = {.at = {at[0], at[1], at[2]}, .share = 1.0, .middle = {0.5, 0.5, 0.5}};
-    if (furthest < -HALF_DIAGONAL && !near[FLOW_INFLOW] && !near[FLOW_OUTFLOW]) return keep_cell(c, &cell);
-    cell.share = cell.middle[0] = cell.middle[1] = cell.middle[2] = 0.0;
-    integrate(b, x, distance, near, &cell, matrix);
-    if (cell.share < LEAST_SHARE) return true;
-    cell.matrix = (int32_t)c->matrix_count;
-    return keep_matrix(c, matrix) && keep_cell(c, &cell);
+    if (within_held(b, x, near)) return;
+    made->cell = (flow_cell){.at = {at[0], at[1], at[2]}, .share = 1.0, .middle = {0.5, 0.5, 0.5}};
+    made->kind = CUBE_WHOLE;
+    if (furthest < -HALF_DIAGONAL && !near[FLOW_INFLOW] && !near[FLOW_OUTFLOW]) return;
+    flow_cell *cell = &made->cell;
+    cell->share = cell->middle[0] = cell->middle[1] = cell->middle[2] = 0.0;
+    integrate(b, x, distance, near, cell, made->matrix);
+    made->kind = cell->share < LEAST_SHARE ? CUBE_LEFT_OUT : CUBE_CUT;
+}
+
+typedef struct cube_batch {
+    const flow_builder *builder;
+    int64_t first;
+    made_cube *made; // [BATCH]
+} cube_batch;
+
+static void make_of_batch(void *context, int64_t i, int worker) {
+    (void)worker;
+    const cube_batch *batch = context;
+    const int *nodes = batch->builder->cells->nodes;
+    int64_t row = (batch->first + i) / (nodes[2] - 1);
+    const int at[3] = {(int)(row / (nodes[1] - 1)), (int)(row % (nodes[1] - 1)), (int)((batch->first + i) % (nodes[2] - 1))};
+    make_cube(batch->builder, at, &batch->made[i]);
+}
+
+static bool keep_made(flow_cells *c, made_cube *made) {
+    if (made->kind == CUBE_LEFT_OUT) return true;
+    if (made->kind == CUBE_WHOLE) return keep_cell(c, &made->cell);
+    made->cell.matrix = (int32_t)c->matrix_count;
+    return keep_matrix(c, made->matrix) && keep_cell(c, &made->cell);
+}
+
+static bool make_cubes(const flow_builder *b) {
+    flow_cells *c = b->cells;
+    int64_t cubes = (int64_t)(c->nodes[0] - 1) * (c->nodes[1] - 1) * (c->nodes[2] - 1);
+    cube_batch batch = {.builder = b, .made = memory_allocate_array(BATCH, sizeof *batch.made)};
+    bool fine = batch.made;
+    for (; fine && batch.first < cubes; batch.first += BATCH) {
+        int64_t count = cubes - batch.first < BATCH ? cubes - batch.first : BATCH;
+        parallel_for(processor_count(), count, 32, make_of_batch, &batch);
+        for (int64_t i = 0; i < count && fine; i++) fine = keep_made(c, &batch.made[i]);
+    }
+    memory_free(batch.made, BATCH * sizeof *batch.made);
+    return fine;
 }
 
 /* The body's distance at the nodes. Blocks of nodes that lie far from the surface get that of their middle. */
@@ -278,19 +325,19 @@ static void sample_block(const flow_builder *b, const int first[3]) {
             }
 }
 
-static bool fill(const flow_builder *b) {
-    const flow_cells *c = b->cells;
+static void sample_layer(void *context, int64_t layer, int worker) {
+    (void)worker;
+    const flow_builder *b = context;
+    int at[3] = {(int)layer * BLOCK, 0, 0};
+    for (at[1] = 0; at[1] < b->cells->nodes[1]; at[1] += BLOCK)
+        for (at[2] = 0; at[2] < b->cells->nodes[2]; at[2] += BLOCK) sample_block(b, at);
+}
+
+static bool fill(flow_builder *b) {
     double whole[64];
-    int at[3];
-    for (at[0] = 0; at[0] < c->nodes[0]; at[0] += BLOCK)
-        for (at[1] = 0; at[1] < c->nodes[1]; at[1] += BLOCK)
-            for (at[2] = 0; at[2] < c->nodes[2]; at[2] += BLOCK) sample_block(b, at);
+    parallel_for(processor_count(), (b->cells->nodes[0] + BLOCK - 1) / BLOCK, 1, sample_layer, b);
     whole_cube(whole);
-    bool fine = keep_matrix(b->cells, whole);
-    for (at[0] = 0; at[0] + 1 < c->nodes[0]; at[0]++)
-        for (at[1] = 0; at[1] + 1 < c->nodes[1]; at[1]++)
-            for (at[2] = 0; at[2] + 1 < c->nodes[2] && fine; at[2]++) fine = add_cube(b, at);
-    return fine;
+    return keep_matrix(b->cells, whole) && make_cubes(b);
 }
 
 /* Chooses the lattice: two cubes of room around the body. */

@@ -1,5 +1,5 @@
 # What accuracy costs: the command, over scenes whose orders are known.
 if(TARGET sunder)
-  add_test(NAME accuracy COMMAND python3 ${CMAKE_SOURCE_DIR}/tests/cases/test_accuracy.py $<TARGET_FILE:sunder> ${CMAKE_SOURCE_DIR})
+  add_test(NAME accuracy COMMAND python3 ${CMAKE_SOURCE_DIR}/tests/cases/test_accuracy.py $<TARGET_FILE:sunder>)
   set_tests_properties(accuracy PROPERTIES TIMEOUT 600)
 endif()

@@ -6,7 +6,7 @@
 #include <string.h>
 
 static const double FASTER = 0.97;       /* times closer than that are the same */
-static const double SAME_ERROR = 1.1;    /* so are errors */
+static const double SAME_ERROR = 1.05;   /* so are errors */
 static const double ORDER_MOST = 8, ORDER_LEAST = 0.5; /* beyond these the levels are not yet where an order shows */
 
 static bool made(const accuracy_run *run) {

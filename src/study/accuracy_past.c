@@ -112,6 +112,6 @@ status accuracy_time_again(accuracy_study *s, accuracy_run *run, report *r) {
     }
     script_close(from);
     char text[64];
-    snprintf(text, sizeof text, "%.9g of %d", run->result.step_seconds, run->timed);
+    snprintf(text, sizeof text, "%.17g of %d", run->result.step_seconds, run->timed);
     return code == STATUS_OK ? remember(s, run, text, r) : code;
 }

@@ -18,12 +18,13 @@ static const accuracy_measure usual[] = {
      .curve = {"kinetic", "elastic", "fibre", "gravitational"}, .judged = true},
     {.name = "shape", .doc = "centre and extents, over the size at the start", .kind = MEASURE_MOMENTS, .curves = 6, .judged = true},
     {.name = "damage", .doc = "mean damage", .kind = MEASURE_CURVES, .curves = 1, .curve = {"damage_mean"}, .judged = true},
-    {.name = "crack", .doc = "when the first particle is broken", .kind = MEASURE_TIME, .curves = 1, .curve = {"damage_max"}, .judged = true},
+    {.name = "cracking", .doc = "when the first particle is broken", .kind = MEASURE_TIME, .curves = 1, .curve = {"damage_max"}, .judged = true},
     {.name = "diffused", .doc = "mean and root mean square of what diffuses", .kind = MEASURE_FIELD, .curves = 2, .curve = {"sheet/diffused"}, .judged = true},
     {.name = "broken", .doc = "fraction of particles that are broken", .kind = MEASURE_CURVES, .curves = 1, .curve = {"broken_fraction"}},
     {.name = "work", .doc = "work of the grips", .kind = MEASURE_CURVES, .curves = 1, .curve = {"grip_work"}},
     {.name = "crack_normal", .doc = "angle between the cracks' planes at the end, over a right angle", .kind = MEASURE_NORMAL, .curves = 3,
      .curve = {"crack_normal_x", "crack_normal_y", "crack_normal_z"}},
+    {.name = "momentum", .doc = "momentum of all bodies", .kind = MEASURE_CURVES, .curves = 3, .curve = {"momentum_x", "momentum_y", "momentum_z"}},
     {.name = "position", .doc = "particle by particle at the end, over the size at the start", .kind = MEASURE_PARTICLES, .curve = {"position"}},
     {.name = "damage_field", .doc = "particle by particle at the end", .kind = MEASURE_PARTICLES, .curve = {"damage"}},
 };
@@ -32,7 +33,8 @@ enum { USUAL = sizeof usual / sizeof *usual };
 
 /* Names of the ledger's curves: any of them may be asked for. */
 static const char *const curves[] = {"kinetic", "elastic", "fibre", "gravitational", "grip_work", "dissipated", "damage_mean", "damage_max", "broken_fraction",
-                                     "determinant_min", "determinant_max", "speed_max", "fibre_stretch_min", "fibre_stretch_max"};
+                                     "determinant_min", "determinant_max", "speed_max", "fibre_stretch_min", "fibre_stretch_max", "angular_momentum_x",
+                                     "angular_momentum_y", "angular_momentum_z", "grip_impulse_x", "grip_impulse_y", "grip_impulse_z", "bond_stretch_max", "diffused_total"};
 enum { CURVES = sizeof curves / sizeof *curves };
 
 static status add_measure(accuracy_study *s, const char *name, report *r) {
@@ -53,7 +55,7 @@ static status add_measure(accuracy_study *s, const char *name, report *r) {
         }
     for (int i = 0; i < USUAL; i++) names[i] = usual[i].name;
     for (int i = 0; i < CURVES; i++) names[USUAL + i] = curves[i];
-    return report_input(r, NULL, 0, "--measure", "energy, shape, damage, crack, diffused, broken, work, crack_normal, position, damage_field, or a measure of the ledger", name,
+    return report_input(r, NULL, 0, "--measure", "energy, shape, damage, cracking, diffused, broken, work, crack_normal, momentum, position, damage_field, or a measure of the ledger", name,
                         name_nearest(name, names, USUAL + CURVES));
 }
 
@@ -113,6 +115,7 @@ static void leave_out(accuracy_study *s, accuracy_run *run, const report *why) {
 /* Whether it was done before, and if not what it costs. A level that cannot even begin is a run that has failed. */
 static status plan_run(accuracy_study *s, int axis, int level, script_reports *reports) {
     report *r = &reports->items[0];
+    if (study_stopped()) return report_set(r, STATUS_INTERRUPTED, "interrupted before the first run");
     if (s->run_count == ACCURACY_RUNS) return report_input(r, NULL, 0, "--levels", "at most 96 runs", "more", NULL);
     accuracy_run *run = &s->runs[s->run_count];
     *run = (accuracy_run){.axis = axis, .level = level, .crack_time = NAN};

@@ -94,24 +94,32 @@ static void draw_table(tui_app *app, accuracy_view *s, tui_area area) {
 
 /* ---- the curves -------------------------------------------------------------------------------------------------- */
 
+/* Lines are axes; after them come points for what is worth its time. */
+static const char *line_name(const accuracy_view *s, int line) {
+    return line < s->axis_count ? s->axes[line].name : "worth its time";
+}
+
 static void draw_curves(tui_app *app, const accuracy_view *s, tui_area area) {
-    double x[VIEW_AXES][16], y[VIEW_AXES][16];
-    int count[VIEW_AXES] = {0};
-    view_chart_series series[VIEW_AXES];
+    double x[VIEW_AXES + 1][VIEW_ROWS], y[VIEW_AXES + 1][VIEW_ROWS];
+    int count[VIEW_AXES + 1] = {0}, lines = s->axis_count + 1;
+    view_chart_series series[VIEW_AXES + 1];
     int column = draw_text(&app->theme, area, 0, 0, STYLE_STRONG, shown_name(s));
     draw_text(&app->theme, area, 0, column, STYLE_DIM, " against seconds of steps: down and to the left is better");
     for (int i = 0; i < s->level_count; i++) {
         bool about;
         const view_level *l = &s->level[i];
         double error = accuracy_view_error(s, l, &about);
-        if (count[l->axis] == 16 || !isfinite(error) || isnan(l->number[COLUMN_STEP_SECONDS])) continue;
-        x[l->axis][count[l->axis]] = l->number[COLUMN_STEP_SECONDS];
-        y[l->axis][count[l->axis]++] = error;
+        if (!(error > 0) || isnan(l->number[COLUMN_STEP_SECONDS])) continue;
+        for (int k = 0; k < 1 + l->frontier; k++) {
+            int line = k ? s->axis_count : l->axis;
+            x[line][count[line]] = l->number[COLUMN_STEP_SECONDS];
+            y[line][count[line]++] = error;
+        }
     }
-    for (int a = 0; a < s->axis_count; a++) series[a] = (view_chart_series){x[a], y[a], count[a], false};
+    for (int a = 0; a < lines; a++) series[a] = (view_chart_series){x[a], y[a], count[a], a == s->axis_count};
     int legend = 0, at = 0;
-    for (int a = 0; a < s->axis_count; a++) {
-        int width = draw_width(s->axes[a].name) + 4;
+    for (int a = 0; a < lines; a++) {
+        int width = draw_width(line_name(s, a)) + 4;
         if (count[a] == 0) continue;
         if (at > 0 && at + width > area.width) legend++, at = 0;
         at += width;
@@ -121,16 +129,16 @@ static void draw_curves(tui_app *app, const accuracy_view *s, tui_area area) {
     size_t n = (size_t)o.width * (size_t)o.height;
     view_chart_cell *cells = memory_allocate_array(n, sizeof *cells);
     if (!cells) return;
-    view_chart(series, s->axis_count, &o, cells);
+    view_chart(series, lines, &o, cells);
     chart_draw(app, (tui_area){area.y + 1, area.x, o.height, area.width}, &o, cells);
     memory_free(cells, n * sizeof *cells);
     int row = area.height - 1 - legend;
     at = 0;
-    for (int a = 0; a < s->axis_count; a++) {
+    for (int a = 0; a < lines; a++) {
         char text[VIEW_WORD + 8];
         if (count[a] == 0) continue;
-        if (at > 0 && at + draw_width(s->axes[a].name) + 4 > area.width) row++, at = 0;
-        snprintf(text, sizeof text, "%c %s  ", view_chart_letter(a), s->axes[a].name);
+        if (at > 0 && at + draw_width(line_name(s, a)) + 4 > area.width) row++, at = 0;
+        snprintf(text, sizeof text, "%c %s  ", view_chart_letter(a), line_name(s, a));
         at = draw_ink(&app->theme, area, row, at, chart_ink(app, a), text);
     }
 }
@@ -139,7 +147,8 @@ static void draw_curves(tui_app *app, const accuracy_view *s, tui_area area) {
 
 static void draw_hint(tui_app *app, const accuracy_view *s, tui_area area) {
     static const char *const lines[] = {
-        "What accuracy costs in time: a scene is run coarser and finer along each of its axes,", "all else equal, and every choice is shown with its seconds and its error.", "",
+        "What accuracy costs in time: a scene is run coarser and finer along each of",
+        "its axes, all else equal; every choice is shown with its seconds and its", "error, and with whether it is worth its time.", "",
         "Enter   takes the scene that is chosen on Scenes, with its settings", "c       takes the one of the run in view"};
     draw_text(&app->theme, area, 0, 0, STYLE_HEAD, "Accuracy");
     for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) draw_text(&app->theme, area, 2 + (int)i, 2, STYLE_DIM, lines[i]);

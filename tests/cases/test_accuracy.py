@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
 """sunder accuracy: axes made from the effects' tables, orders that are known, runs that are not made twice, budgets, interruptions.
 
-Usage: test_accuracy.py SUNDER SOURCE_DIR [NAME...]   Each test works in a folder and with a ledger of its own.
+Usage: test_accuracy.py SUNDER [NAME...]   Each test works in a folder and with a ledger of its own.
 """
-import csv, json, os, shutil, signal, sqlite3, subprocess, sys, tempfile, time
+import csv, json, os, signal, time
 
-SUNDER, SOURCE = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+import harness
+from harness import SOURCE, check, run_tests
+
 PULL = os.path.join(SOURCE, "scenes/solid/tube_pull.lua")
 SMALL = ["--set", "particles=500", "--set", "break_stretch=0.02", "--set", "pull=0.6", "--frames", "4"]
 WHOLE = ["--set", "particles=500", "--set", "pull=0.6", "--set", "variant=elastic_only", "--frames", "4"]
-failures, checks = [], 0
 
 # Linear tetrahedra under v += Δt f/m, x += Δt v. Velocities stand half a step beside places, so that energies are of first order in Δt;
 # places themselves are of second (the leapfrog of Störmer and Verlet).
@@ -30,42 +31,20 @@ return s.scene { title = "Film", sheets = { { shape = s.rectangle { size = { 2, 
 """
 
 
-def check(condition, text):
-    global checks
-    checks += 1
-    if not condition:
-        failures.append(text)
-        print("  failed:", text)
-
-
-class Box:
-    def __enter__(self):
-        self.folder = tempfile.mkdtemp(prefix="sunder-accuracy-")
-        self.db = os.path.join(self.folder, "ledger.db")
-        self.environment = dict(os.environ, SUNDER_DB=self.db, XDG_DATA_HOME=os.path.join(self.folder, "data"))
-        return self
-
-    def __exit__(self, *_):
-        shutil.rmtree(self.folder, ignore_errors=True)
-
+class Box(harness.Box):
     def write(self, name, text):
-        path = os.path.join(self.folder, name)
-        with open(path, "w", encoding="utf-8") as file:
+        with open(self.path(name), "w", encoding="utf-8") as file:
             file.write(text)
-        return path
+        return self.path(name)
 
-    def call(self, *arguments, code=0):
-        done = subprocess.run([SUNDER, *arguments], cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=300, check=False)
-        check(done.returncode == code, f"{arguments}: exit code {done.returncode}, expected {code}: {done.stderr[-400:]}")
-        return done
+    def ends(self, expected, *arguments):
+        """What a command says and complains of, which must end with this exit code."""
+        code, out, err = self.call(*arguments)
+        check(code == expected, f"{arguments}: exit code {code}, expected {expected}: {err[-400:]}")
+        return out, err
 
     def study(self, *arguments):
-        done = self.call("accuracy", *arguments, "--threads", "1", "--quiet", "--json")
-        return json.loads(done.stdout)
-
-    def sql(self, query):
-        with sqlite3.connect(self.db) as connection:
-            return connection.execute(query).fetchall()
+        return json.loads(self.ends(0, "accuracy", *arguments, "--threads", "1", "--quiet", "--json")[0])
 
 
 def axis(study, name):
@@ -76,7 +55,7 @@ def names(study):
     return [a["name"] for a in study["axes"] if a["levels"]]
 
 
-def orders_are_those_of_the_integrator():
+def test_orders_are_those_of_the_integrator():
     with Box() as box:
         study = box.study(box.write("bar.lua", BAR), "--precision", "f64", "--axis", "step", "--levels", "4")
         step = axis(study, "step")
@@ -94,7 +73,7 @@ def orders_are_those_of_the_integrator():
         check(film["levels"][0]["errors"]["diffused"] > 0, "what diffuses is compared")
 
 
-def precision_is_round_off():
+def test_precision_is_round_off():
     with Box() as box:
         study = box.study(PULL, *WHOLE, "--axis", "precision")
         own, fine = axis(study, "precision")["levels"]
@@ -104,7 +83,7 @@ def precision_is_round_off():
         check([a["name"] for a in study["axes"]] == ["precision"], "no other axis than that asked for")
 
 
-def axes_come_from_the_effects():
+def test_axes_come_from_the_effects():
     with Box() as box:
         bar = box.write("bar.lua", BAR)
         check(names(box.study(bar, "--list", "--axis", "all")) == ["resolution", "step", "precision"], "a bar of tetrahedra has no kernels and no damage")
@@ -114,40 +93,40 @@ def axes_come_from_the_effects():
         check("damage.form" in full and "laplacian" in full and "damage.tolerance" not in full, f"with damage, in its explicit form: {full}")
         implicit = box.study(PULL, *SMALL, "--set", "form=implicit", "--list")
         check([level["value"] for level in axis(implicit, "damage.tolerance")["levels"]] == ["0.001", "0.0001", "1e-05"], "the implicit form has a tolerance")
-        check(box.sql("SELECT count(*) FROM runs") == [(0,)], "who only looks runs nothing")
-        done = box.call("accuracy", bar, "--axis", "resolutoin", code=2)
-        check("resolution" in done.stderr and "did you mean" in done.stderr, f"the nearest axis: {done.stderr}")
-        done = box.call("accuracy", bar, "--axis", "laplacian", code=2)
-        check("an axis of this scene: resolution step precision" in done.stderr, f"axes that it has: {done.stderr}")
-        check("energy" in box.call("accuracy", bar, "--measure", "enery", code=2).stderr, "the nearest measure")
-        box.call("accuracy", code=2)
-        box.call("accuracy", bar, "--levels", "1", code=2)
-        box.call("accuracy", os.path.join(box.folder, "nowhere.lua"), code=2)
+        check(box.rows("SELECT count(*) FROM runs") == [(0,)], "who only looks runs nothing")
+        err = box.ends(2, "accuracy", bar, "--axis", "resolutoin")[1]
+        check("did you mean 'resolution'" in err, f"the nearest axis: {err}")
+        err = box.ends(2, "accuracy", bar, "--axis", "laplacian")[1]
+        check("an axis of this scene: resolution step precision" in err, f"axes that it has: {err}")
+        check("did you mean 'energy'" in box.ends(2, "accuracy", bar, "--measure", "enery")[1], "the nearest measure")
+        box.ends(2, "accuracy")
+        box.ends(2, "accuracy", bar, "--levels", "1")
+        box.ends(2, "accuracy", box.path("nowhere.lua"))
 
 
-def runs_are_not_made_twice():
+def test_runs_are_not_made_twice():
     with Box() as box:
         words = [PULL, *SMALL, "--axis", "resolution", "--axis", "kernel"]
         first = box.study(*words)
         check(first["done"] == 4 and first["done_before"] == 0 and first["failed"] == 0, f"the scene's own, two beside it, one kernel: {first}")
-        check(box.sql(f"SELECT count(*) FROM tags WHERE tag = '{first['tag']}'") == [(4,)], "tagged")
+        check(box.rows(f"SELECT count(*) FROM tags WHERE tag = '{first['tag']}'") == [(4,)], "tagged")
         again = box.study(*words)
         check(again["done"] == 0 and again["done_before"] == 4, "nothing is made again")
-        check(box.sql("SELECT count(*) FROM runs") == [(4,)], "four runs in the ledger")
+        check(box.rows("SELECT count(*) FROM runs") == [(4,)], "four runs in the ledger")
         for a, b in zip(first["axes"], again["axes"]):
             check([level["errors"] for level in a["levels"]] == [level["errors"] for level in b["levels"]], "the same errors")
             check([level["step_s"] for level in a["levels"]] == [level["step_s"] for level in b["levels"]], "the same seconds")
-        listed = box.call("runs", "list", "--where", "tags LIKE '%accuracy:tube_pull%'", "--json")
-        check(len(json.loads(listed.stdout)["runs"]) == 4, "found by their tag")
+        listed = box.ends(0, "runs", "list", "--where", "tags LIKE '%accuracy:tube_pull%'", "--json")[0]
+        check(len(json.loads(listed)["runs"]) == 4, "found by their tag")
         together = box.study(PULL, *SMALL, "--axis", "step", "-j", "2")
         check(not together["times_comparable"] and together["done"] == 2 and together["done_before"] == 1, f"two at a time: {together['done']}")
         alone = box.study(PULL, *SMALL, "--axis", "step")
         check(alone["times_comparable"] and alone["done"] == 2, "whose times are not taken for a study's")
-        out = box.study(PULL, *SMALL, "--axis", "precision", "--out", os.path.join(box.folder, "kept"))
-        check(sorted(os.listdir(os.path.join(box.folder, "kept"))) == ["precision-f64"] and out["done"] == 1, "a folder of one's choice")
+        out = box.study(PULL, *SMALL, "--axis", "precision", "--out", box.path("kept"))
+        check(sorted(os.listdir(box.path("kept"))) == ["precision-f64"] and out["done"] == 1, "a folder of one's choice")
 
 
-def a_budget_takes_the_finest_away():
+def test_a_budget_takes_the_finest_away():
     with Box() as box:
         words = [PULL, *SMALL, "--axis", "resolution", "--levels", "9", "--list"]
         whole = box.study(*words)
@@ -156,35 +135,35 @@ def a_budget_takes_the_finest_away():
         check(max(values[1]) < max(values[0]), f"the finest level is left out: {values}")
         check(any("left out by the budget: particles" in note for note in less["notes"]), f"and that is said: {less['notes']}")
         check(less["predicted_s"] <= whole["predicted_s"] / 2, "the budget holds")
-        done = box.call("accuracy", *words, "--budget", "1e-9", code=2)
-        check("--budget: expected at least" in done.stderr, f"one that not even the scene's own run fits: {done.stderr}")
+        err = box.ends(2, "accuracy", *words, "--budget", "1e-9")[1]
+        check("--budget: expected at least" in err, f"one that not even the scene's own run fits: {err}")
 
 
-def an_interrupted_study_goes_on():
+def test_an_interrupted_study_goes_on():
     with Box() as box:
         words = [PULL, *SMALL[:-1], "30", "--axis", "resolution", "--threads", "1"]
-        process = subprocess.Popen([SUNDER, "accuracy", *words], cwd=box.folder, env=box.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        process = box.start("accuracy", *words)
         for line in process.stdout:
             if line.startswith("2/3  started"):
                 break
-        while box.sql("SELECT count(*) FROM runs") < [(2,)]:
+        while box.rows("SELECT count(*) FROM runs") < [(2,)]:
             time.sleep(0.01)
         process.send_signal(signal.SIGINT)
-        rest = process.stdout.read()
-        check(process.wait() == 130, f"interrupted: {rest[-200:]}")
-        states = [row[0] for row in box.sql("SELECT status FROM runs ORDER BY run")]
+        err = process.communicate(timeout=120)[1]
+        check(process.returncode == 130 and "interrupted" in err, f"interrupted: {process.returncode} {err}")
+        states = [row[0] for row in box.rows("SELECT status FROM runs ORDER BY run")]
         check(states == ["done", "interrupted"], f"what is done is kept, the third is not begun: {states}")
         study = box.study(*words)
         check(study["done"] == 2 and study["done_before"] == 1, "it goes on from there")
 
 
-def tables_for_people_and_programs():
+def test_tables_for_people_and_programs():
     with Box() as box:
-        table = os.path.join(box.folder, "levels.csv")
-        done = box.call("accuracy", PULL, *SMALL, "--axis", "precision", "--axis", "kernel", "--csv", table, "--threads", "1")
-        check(max(len(line) for line in done.stdout.splitlines() if " is faster" not in line and " times as long" not in line) <= 80, "80 columns")
+        table = box.path("levels.csv")
+        out = box.ends(0, "accuracy", PULL, *SMALL, "--axis", "precision", "--axis", "kernel", "--csv", table, "--threads", "1")[0]
+        check(max(len(line) for line in out.splitlines()) <= 80, f"80 columns:\n{out}")
         for word in ("precision:", "kernel:", "error against seconds", "worth their time", "from f32 to f64 takes"):
-            check(word in done.stdout, f"'{word}' is said:\n{done.stdout}")
+            check(word in out, f"'{word}' is said:\n{out}")
         with open(table, encoding="utf-8") as file:
             rows = list(csv.DictReader(line for line in file if line[0] != "#"))
         check([row["value"] for row in rows] == ["f32", "f64", "quadratic", "cubic"], "a row a level")
@@ -192,14 +171,4 @@ def tables_for_people_and_programs():
         check(all(float(row["step_s"]) > 0 and len(row["run"]) > 10 for row in rows), "with seconds and run")
 
 
-TESTS = [orders_are_those_of_the_integrator, precision_is_round_off, axes_come_from_the_effects, runs_are_not_made_twice, a_budget_takes_the_finest_away,
-         an_interrupted_study_goes_on, tables_for_people_and_programs]
-
-for test in TESTS:
-    if len(sys.argv) > 3 and test.__name__ not in sys.argv[3:]:
-        continue
-    start, before = time.time(), len(failures)
-    test()
-    print(f"{'ok  ' if len(failures) == before else 'FAIL'} {test.__name__}  {time.time() - start:.1f} s", flush=True)
-print(f"{checks} checks, {len(failures)} failed")
-sys.exit(1 if failures else 0)
+run_tests(globals())

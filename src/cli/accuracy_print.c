@@ -188,7 +188,7 @@ static void print_frontier(const accuracy_study *s) {
 status accuracy_print(const accuracy_study *s, report *r) {
     bool any = false;
     for (int a = 0; a < s->axis_count; a++) print_axis(s, a), any |= s->results[a].reference >= 0;
-    printf("\n * the scene's own; error: the largest of the measures, against the finest level;\n   ~ what is estimated to be left by the observed order\n");
+    printf("\n* the scene's own; error: the largest of the measures, against the finest level;\n  ~ what is estimated to be left by the observed order\n");
     status code = any ? print_chart(s, r) : STATUS_OK;
     print_frontier(s);
     if (s->note_count > 0) putchar('\n');

@@ -126,7 +126,7 @@ static void told(void *context, int run, const study_result *result, bool ended)
     accuracy_run_name(c->study, run, name);
     const char *word = !ended ? "started" : result->outcome == STATUS_INTERRUPTED ? "interrupted" : result->outcome == STATUS_OK ? "done" : "failed";
     fprintf(people(c), "%d/%d  %-11s  %s  %s", c->number, c->wanted, word, result->id[0] ? result->id : "-", name);
-    if (ended && result->outcome == STATUS_OK) fprintf(people(c), "  %.3g s, %.3g s in all", result->step_seconds, result->seconds);
+    if (ended && result->outcome == STATUS_OK) fprintf(people(c), "  %.2g s, %.2g in all", result->step_seconds, result->seconds);
     if (ended && result->message[0]) fprintf(people(c), "  %s", result->message);
     fputc('\n', people(c));
     fflush(people(c));

@@ -33,6 +33,21 @@ static void limit_gravity(const simulation *s, double limit[EFFECT_LIMIT]) {
     if (s->scene->effects[gravity].on && pull > 0) limit[gravity] = 0.5 * sqrt(way / pull);
 }
 
+double engine_boundary_limit(const simulation *s, double speed) {
+    return speed > 0 ? s->scene->cfl * finest_way(s) / speed : HUGE_VAL;
+}
+
+/* What stands in a wind is blown along before its own speed says so. */
+static void limit_wind(const simulation *s, double limit[EFFECT_LIMIT]) {
+    int drag = effect_index("drag"), key = effect_parameter(s->plan.effects[drag], "wind");
+    for (int b = 0; b < s->scene->sheet_count; b++) {
+        const effect_values *values = &s->scene->materials[s->scene->sheets[b].material].effects[drag];
+        const double *wind = values->value[key];
+        double speed = sqrt(wind[0] * wind[0] + wind[1] * wind[1] + wind[2] * wind[2]);
+        if (values->on) limit[drag] = fmin(limit[drag], engine_boundary_limit(s, speed));
+    }
+}
+
 void engine_limits(const simulation *s, double limit[EFFECT_LIMIT]) {
     for (int e = 0; e < EFFECT_LIMIT; e++) limit[e] = HUGE_VAL;
     if (s->solid) s->engine->limits(s->solid, limit);
@@ -43,10 +58,7 @@ void engine_limits(const simulation *s, double limit[EFFECT_LIMIT]) {
         if (strcmp(table->name, "elastic") == 0 || effect_supplies(table, SHEET_ELASTICITY)) limit[e] *= s->scene->cfl;
     }
     limit_gravity(s, limit);
-}
-
-double engine_boundary_limit(const simulation *s, double speed) {
-    return speed > 0 ? s->scene->cfl * finest_way(s) / speed : HUGE_VAL;
+    limit_wind(s, limit);
 }
 
 status engine_step(simulation *s, double dt, report *r) {

@@ -67,7 +67,9 @@ static void print_axes(const effect *e) {
 }
 
 static void print_effect(const effect *e) {
-    printf("## %s\n\n%s. %s; %s.\n\n", e->name, e->doc, e->scope == SCOPE_MATERIAL ? "Of a material" : "Of the scene", e->reference);
+    bool shared = effect_index_of(ENGINE_SOLID, e->name) >= 0 && effect_index_of(ENGINE_SHEET, e->name) >= 0;
+    printf("## %s%s\n\n%s. %s; %s.\n\n", e->name, !shared ? "" : e->engine == ENGINE_SHEET ? " (sheets)" : " (solids)", e->doc,
+           e->scope == SCOPE_MATERIAL ? "Of a material" : "Of the scene", e->reference);
     if (e->needs) printf("Needs: %s.\n\n", e->needs);
     if (e->provides) printf("Provides: %s; a material has at most one effect that does.\n\n", e->provides);
     if (e->parameter_count > 0) print_parameters(e);

@@ -2,6 +2,8 @@
 #ifndef SUNDER_EFFECT_KINDS_H
 #define SUNDER_EFFECT_KINDS_H
 
+#include <stdbool.h>
+
 /* What a particle's velocity carries between steps (METHOD.md §3). */
 typedef enum transfer_kind { TRANSFER_APIC, TRANSFER_RPIC, TRANSFER_PIC, TRANSFER_FLIP } transfer_kind;
 
@@ -13,5 +15,11 @@ typedef enum discretisation_kind { DISCRETISATION_PARTICLES, DISCRETISATION_TETR
 
 /* Where tetrahedra come from: a lattice in any shape, or Gmsh within a triangle mesh. */
 typedef enum mesher_kind { MESHER_LATTICE, MESHER_GMSH } mesher_kind;
+
+/* How a source of what diffuses is turned up or down: its rate or held value is multiplied; off, it does nothing. */
+typedef struct source_feed {
+    double strength;
+    bool off;
+} source_feed;
 
 #endif

@@ -275,12 +275,15 @@ void try_functions(script *s) {
     try_variations(s);
     for (int i = 0; i < sc->body_count; i++) {
         scene_body *b = &sc->bodies[i];
-        if (!b->shape || (!is_lua(&b->velocity) && !is_lua(&b->start) && !is_lua(&b->fibres.direction))) continue;
+        bool fed = false;
+        for (int k = 0; k < b->source_count; k++) fed |= is_lua(&b->sources[k].value);
+        if (!b->shape || (!fed && !is_lua(&b->velocity) && !is_lua(&b->start) && !is_lua(&b->fibres.direction))) continue;
         double points[PLACE_CALLS][3];
         int count = points_inside(b->shape, points);
         try_fibres(s, &b->fibres, points, count);
         try_places(s, &b->velocity, points, count);
         try_places(s, &b->start, points, count);
+        for (int k = 0; k < b->source_count; k++) try_places(s, &b->sources[k].value, points, count);
     }
     for (int i = 0; i < sc->sheet_count; i++) {
         scene_sheet *b = &sc->sheets[i];

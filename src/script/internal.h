@@ -274,8 +274,8 @@ void purity_freeze(lua_State *L);
 const char *purity_broken(lua_State *L);
 
 /* ---- materials.c ---- */
-/* The index in the scene's materials of the value at `index` (table or recipe name), or −1 with a recorded problem. */
-int read_material(script *s, int index, const place *p, const char *body);
+/* The index in the scene's materials of the value at `index` (table or recipe name) of a body of some engine, or −1 with a recorded problem. */
+int read_material(script *s, int index, const place *p, engine_kind engine, const char *body);
 /* Reads one effect's value (the table, a bare value, true or false) into `values`. */
 void read_effect(script *s, int index, const place *p, const effect *e, effect_values *values, effect_site *site);
 /* Ranges, required keys and twins of everything that is on. */
@@ -299,11 +299,13 @@ bool push_value(lua_State *L, int index, const char *key);
 /* Under the keys `shape`, `key` and `material` of the table at `index`. */
 const shape *read_shape_field(script *s, int index, const place *p);
 void function_field(script *s, int index, const place *p, const char *key, scene_function *out);
-int read_body_material(script *s, int index, const place *p, const char *body);
+int read_body_material(script *s, int index, const place *p, engine_kind engine, const char *body);
 /* Reads the table that the scene file returned (top of the stack). */
 void read_scene(lua_State *L, const char *file);
 
 /* ---- sheets.c ---- */
+/* Reads the list under `sources` of the table at `index`. */
+void read_sources(script *s, int index, const place *p, int *count, scene_source items[BODY_SOURCES]);
 /* Reads one of `sheets`. */
 void read_sheet(script *s, int index, const place *p, int number);
 

@@ -20,6 +20,12 @@ static const effect *catalogue_entry(int index) {
     return effect_catalogue(&count)[index];
 }
 
+/* Of bodies of one kind: an effect of their engine before one of the same name of the other. */
+static int find_effect(engine_kind engine, const char *name) {
+    int own = effect_index_of(engine, name);
+    return own >= 0 ? own : effect_index(name);
+}
+
 /* ---- one parameter ----------------------------------------------------------------------------------------------- */
 
 static plain_rule parameter_rule(const parameter *p) {
@@ -54,7 +60,7 @@ static bool read_variation(script *s, int index, const place *p, int effect_at, 
 
 static void read_parameter(script *s, int index, const place *p, const effect *e, int key, effect_values *values, scene_material *m) {
     values->given[key] = true; /* wrong or not, it was said: it is not missing as well */
-    if (e->parameters[key].scale && read_variation(s, index, p, effect_index(e->name), key, m)) return;
+    if (e->parameters[key].scale && read_variation(s, index, p, effect_index_of(e->engine, e->name), key, m)) return;
     plain_value v = plain_from_lua(s->L, index);
     char expected[256];
     const char *nearest;
@@ -190,13 +196,13 @@ static void name_material(const scene *sc, scene_material *m, const char *wanted
     for (int number = 2; name_taken(sc, m->name); number++) snprintf(m->name, sizeof m->name, "%s_%d", base, number);
 }
 
-static void read_material_key(script *s, const char *name, const material_origin *o, scene_material *m, int index,
+static void read_material_key(script *s, const char *name, engine_kind engine, const material_origin *o, scene_material *m, int index,
                               char wanted[SCRIPT_TEXT]) {
     lua_State *L = s->L;
     place p = material_place(s, o, name);
     lua_pushstring(L, name);
     lua_rawget(L, index);
-    int e = effect_index(name), row = (int)(m - s->scene->materials);
+    int e = find_effect(engine, name), row = (int)(m - s->scene->materials);
     if (strcmp(name, "density") == 0) {
         read_density(s, -1, &p, m);
     } else if (strcmp(name, "name") == 0) {
@@ -238,7 +244,7 @@ static material_origin find_origin(script *s, int index, const place *p) {
 }
 
 /* The table at `index` becomes the next material of the scene. */
-static int add_material(script *s, int index, const place *p, const char *body) {
+static int add_material(script *s, int index, const place *p, engine_kind engine, const char *body) {
     lua_State *L = s->L;
     scene *sc = s->scene;
     int top = lua_gettop(L), effects, row = sc->material_count;
@@ -261,7 +267,7 @@ static int add_material(script *s, int index, const place *p, const char *body) 
         lua_rawgeti(L, list, i);
         const char *name = lua_tostring(L, -1);
         density = density || strcmp(name, "density") == 0;
-        read_material_key(s, name, &origin, m, index, wanted);
+        read_material_key(s, name, engine, &origin, m, index, wanted);
         lua_settop(L, list);
     }
     place missing = place_key(&origin.base, "density");
@@ -287,7 +293,7 @@ static void replace_by_recipe(script *s, const place *p) {
     lua_pop(L, 1);
 }
 
-int read_material(script *s, int index, const place *p, const char *body) {
+int read_material(script *s, int index, const place *p, engine_kind engine, const char *body) {
     lua_State *L = s->L;
     lua_pushvalue(L, index);
     if (lua_type(L, -1) == LUA_TSTRING) replace_by_recipe(s, p);
@@ -298,7 +304,7 @@ int read_material(script *s, int index, const place *p, const char *body) {
     if (lua_rawget(L, -2) != LUA_TNIL) {
         material = (int)lua_tointeger(L, -1);
     } else {
-        material = add_material(s, value, p, body);
+        material = add_material(s, value, p, engine, body);
         if (lua_istable(L, value)) {
             lua_pushvalue(L, value);
             lua_pushinteger(L, material);

@@ -35,14 +35,16 @@ static int api_sweep(lua_State *L) {
 
 /* core.twin(effect, key): the key of the same effect that says the same thing, or nil. */
 static int api_twin(lua_State *L) {
-    int index = lua_type(L, 1) == LUA_TSTRING ? effect_index(lua_tostring(L, 1)) : -1;
-    if (index < 0 || lua_type(L, 2) != LUA_TSTRING) return 0;
+    if (lua_type(L, 1) != LUA_TSTRING || lua_type(L, 2) != LUA_TSTRING) return 0;
     int count;
-    const effect *e = effect_catalogue(&count)[index];
-    int key = effect_parameter(e, lua_tostring(L, 2));
-    if (key < 0 || !e->parameters[key].twin) return 0;
-    lua_pushstring(L, e->parameters[key].twin);
-    return 1;
+    const effect *const *all = effect_catalogue(&count);
+    for (int e = 0; e < count; e++) {
+        int key = strcmp(all[e]->name, lua_tostring(L, 1)) == 0 ? effect_parameter(all[e], lua_tostring(L, 2)) : -1;
+        if (key < 0 || !all[e]->parameters[key].twin) continue;
+        lua_pushstring(L, all[e]->parameters[key].twin);
+        return 1;
+    }
+    return 0;
 }
 
 /* What a scene calls. Upvalues: name, the Lua function. The C frame keeps the caller's frame alive below it: `return

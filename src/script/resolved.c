@@ -143,18 +143,16 @@ static bool list_material(script *s, int row, bool *derived) {
 }
 
 static bool list_sources(script *s) {
-    int number = 0;
-    for (int b = 0; b < s->scene->sheet_count; b++)
-        for (int k = 0; k < s->scene->sheets[b].source_count; k++) {
-            const scene_source *from = &s->scene->sheets[b].sources[k];
-            scene_parameter *strength = add_parameter(s), *on = add_parameter(s);
-            if (!strength || !on) return false;
-            *strength = (scene_parameter){.unit = "1", .doc = "what the source gives, or holds, is multiplied by this", .number = from->strength};
-            *on = (scene_parameter){.unit = "1", .doc = "whether the source does anything", .is_text = true, .number = from->on};
-            snprintf(strength->name, sizeof strength->name, "sources.%d.strength", ++number);
-            snprintf(on->name, sizeof on->name, "sources.%d.on", number);
-            snprintf(on->text, sizeof on->text, "%s", from->on != 0 ? "true" : "false");
-        }
+    const scene_source *from;
+    for (int number = 0; (from = scene_source_at(s->scene, number)); number++) {
+        scene_parameter *strength = add_parameter(s), *on = add_parameter(s);
+        if (!strength || !on) return false;
+        *strength = (scene_parameter){.unit = "1", .doc = "what the source gives, or holds, is multiplied by this", .number = from->strength};
+        *on = (scene_parameter){.unit = "1", .doc = "whether the source does anything", .is_text = true, .number = from->on};
+        snprintf(strength->name, sizeof strength->name, "sources.%d.strength", number + 1);
+        snprintf(on->name, sizeof on->name, "sources.%d.on", number + 1);
+        snprintf(on->text, sizeof on->text, "%s", from->on != 0 ? "true" : "false");
+    }
     return true;
 }
 

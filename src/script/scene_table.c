@@ -59,16 +59,16 @@ static bool is_bounded(const shape *body, double middle[3]) {
     return bounded;
 }
 
-int read_body_material(script *s, int index, const place *p, const char *body) {
+int read_body_material(script *s, int index, const place *p, engine_kind engine, const char *body) {
     lua_State *L = s->L;
     int material = -1;
     place at = place_key(p, "material");
     if (s->recipe) {
         place option = {.file = s->sources[0].display, .line = s->scene_line, .call = "--recipe"};
         lua_pushstring(L, s->recipe);
-        material = read_material(s, -1, &option, body);
+        material = read_material(s, -1, &option, engine, body);
     } else if (push_value(L, index, "material")) {
-        material = read_material(s, -1, &at, body);
+        material = read_material(s, -1, &at, engine, body);
     } else {
         problem_place(s, &at, "a value: this key is required", "nothing", NULL);
     }
@@ -107,7 +107,8 @@ static void read_solid(script *s, int index, const place *p, int number) {
                       {.key = "sampling", .kind = FIELD_CHOICE, .choices = samplings, .number = &sampling},
                       {.key = "discretisation", .kind = FIELD_CHOICE, .choices = discretisations, .number = &discretisation},
                       {.key = "mesher", .kind = FIELD_CHOICE, .choices = meshers, .number = &mesher},
-                      {.key = "start", .kind = FIELD_OTHER}};
+                      {.key = "start", .kind = FIELD_OTHER},
+                      {.key = "sources", .kind = FIELD_OTHER}};
     scene_body *b = &s->scene->bodies[s->scene->body_count];
     s->body_places[s->scene->body_count++] = *p;
     *b = (scene_body){.material = -1};
@@ -117,7 +118,7 @@ static void read_solid(script *s, int index, const place *p, int number) {
     b->sampling = (sampling_kind)sampling;
     b->discretisation = (discretisation_kind)discretisation;
     b->mesher = (mesher_kind)mesher;
-    b->material = read_body_material(s, index, p, b->name);
+    b->material = read_body_material(s, index, p, ENGINE_SOLID, b->name);
     if (fields[1].given && (b->shape = read_shape_field(s, index, p)) && !is_bounded(b->shape, middle)) {
         place at = place_key(p, "shape");
         problem_place(s, &at, "a bounded shape for a body", "one that has no end", NULL);
@@ -127,6 +128,7 @@ static void read_solid(script *s, int index, const place *p, int number) {
     lua_pop(s->L, 1);
     function_field(s, index, p, "velocity", &b->velocity);
     function_field(s, index, p, "start", &b->start);
+    read_sources(s, index, p, &b->source_count, b->sources);
     at = place_key(p, "notches");
     if (push_value(s->L, index, "notches")) b->notches = read_notches(s, lua_gettop(s->L), &at);
     lua_pop(s->L, 1);

@@ -13,15 +13,12 @@ enum { MATCHES = 64, NAMES = 1024, PATH_SIZE = 192, SOURCE = -2 };
 /* A value that --set can reach beside the scene's plain keys. */
 typedef struct knob {
     int row;    /* material, or SCENE_SITE */
-    int effect; /* −1: the density; SOURCE: one of the sheets' sources */
+    int effect; /* −1: the density; SOURCE: one of the bodies' and sheets' sources */
     int key;    /* of a source 2 × its number among all, and 1 more for `on` */
 } knob;
 
-/* Source number `number` of all sheets, in their order; NULL when there are fewer. */
 static scene_source *source_at(scene *s, int number) {
-    for (int b = 0; b < s->sheet_count; number -= s->sheets[b++].source_count)
-        if (number < s->sheets[b].source_count) return &s->sheets[b].sources[number];
-    return NULL;
+    return (scene_source *)(uintptr_t)scene_source_at(s, number);
 }
 
 static void source_name(int key, char *text) {

@@ -1,4 +1,4 @@
-/* `sheets`: regions, lattices, notches, sources. */
+/* `sheets`: regions, lattices, notches; and sources, which solids have too. */
 #include "script/internal.h"
 
 #include <math.h>
@@ -8,7 +8,8 @@ static const char *const lattices[] = {"square", "hexagonal", "scattered", NULL}
 _Static_assert(SHEET_SAMPLING_SQUARE == 0 && SHEET_SAMPLING_HEXAGONAL == 1 && SHEET_SAMPLING_POISSON == 2, "order of `lattices`");
 
 /* A line from … to, or a shape. */
-static void read_notch(script *s, int index, const place *p, scene_sheet *b) {
+static void read_notch(script *s, int index, const place *p, void *owner) {
+    scene_sheet *b = owner;
     scene_notch *n = &b->notches[b->notch_count];
     *n = (scene_notch){0};
     field fields[] = {{.key = "from", .kind = FIELD_VECTOR, .number = n->from},
@@ -24,8 +25,15 @@ static void read_notch(script *s, int index, const place *p, scene_sheet *b) {
         b->notch_count++;
 }
 
-static void read_source(script *s, int index, const place *p, scene_sheet *b) {
-    scene_source *from = &b->sources[b->source_count];
+/* Where a body or a sheet keeps its sources. */
+typedef struct source_list {
+    int *count;
+    scene_source *items;
+} source_list;
+
+static void read_source(script *s, int index, const place *p, void *owner) {
+    const source_list *list = owner;
+    scene_source *from = &list->items[*list->count];
     double spots = 0;
     *from = (scene_source){.stop = HUGE_VAL, .strength = 1, .on = 1};
     field fields[] = {{.key = "shape", .kind = FIELD_OTHER},
@@ -53,23 +61,28 @@ static void read_source(script *s, int index, const place *p, scene_sheet *b) {
     if (!(from->stop > from->start)) problem_place(s, &end, "a time after start", "an earlier one, or the same", NULL);
     if (push_value(s->L, index, from->fixed ? "value" : "rate")) read_scalar_function(s, -1, &at, &from->value);
     lua_pop(s->L, 1);
-    b->source_count++;
+    (*list->count)++;
 }
 
-typedef void (*part_reader)(script *s, int index, const place *p, scene_sheet *b);
+typedef void (*part_reader)(script *s, int index, const place *p, void *owner);
 
-static void read_parts(script *s, int index, const place *p, const char *key, int limit, const char *expected, scene_sheet *b, part_reader read) {
+static void read_parts(script *s, int index, const place *p, const char *key, int limit, const char *expected, void *owner, part_reader read) {
     place list = place_key(p, key);
     if (push_value(s->L, index, key)) {
         int table = lua_gettop(s->L), count = read_list(s, table, &list, limit, expected);
         for (int i = 1; i <= count; i++) {
             place at = place_index(&list, i);
             lua_rawgeti(s->L, table, i);
-            if (read_table(s, lua_gettop(s->L), &at, "a table with named fields")) read(s, lua_gettop(s->L), &at, b);
+            if (read_table(s, lua_gettop(s->L), &at, "a table with named fields")) read(s, lua_gettop(s->L), &at, owner);
             lua_pop(s->L, 1);
         }
     }
     lua_pop(s->L, 1);
+}
+
+void read_sources(script *s, int index, const place *p, int *count, scene_source items[BODY_SOURCES]) {
+    source_list list = {count, items};
+    read_parts(s, index, p, "sources", BODY_SOURCES, "a list of sources: sources = { { shape = …, rate = … }, … }", &list, read_source);
 }
 
 void read_sheet(script *s, int index, const place *p, int number) {
@@ -100,12 +113,12 @@ void read_sheet(script *s, int index, const place *p, int number) {
     b->lattice = (sheet_sampling)lattice;
     b->region.surface = surface != 0;
     if (b->region.surface && !fields[6].given) b->lattice = SHEET_SAMPLING_POISSON;
-    b->material = read_body_material(s, index, p, b->name);
+    b->material = read_body_material(s, index, p, ENGINE_SHEET, b->name);
     if (fields[1].given) b->region.shape = read_shape_field(s, index, p);
     place grain = place_key(p, "grain");
     if (push_value(s->L, index, "grain")) read_fibres(s, -1, &grain, b->region.shape, &b->grain);
     lua_pop(s->L, 1);
     function_field(s, index, p, "velocity", &b->velocity);
     read_parts(s, index, p, "notches", SHEET_CUTS, "a list of notches: notches = { { from = …, to = … }, … }", b, read_notch);
-    read_parts(s, index, p, "sources", SHEET_FEEDS, "a list of sources: sources = { { shape = …, rate = … }, … }", b, read_source);
+    read_sources(s, index, p, &b->source_count, b->sources);
 }

@@ -123,8 +123,8 @@ static void destroy(sheet *s) {
     memory_free(s, sizeof *s);
 }
 
-static void feed(sheet *s, const sheet_feed *feeds) {
-    for (int k = 0; k < s->definition.source_count; k++) s->feeds[k] = feeds ? feeds[k] : (sheet_feed){.strength = 1};
+static void feed(sheet *s, const source_feed *feeds) {
+    for (int k = 0; k < s->definition.source_count; k++) s->feeds[k] = feeds ? feeds[k] : (source_feed){.strength = 1};
 }
 
 static double fastest_now(const sheet *s) {

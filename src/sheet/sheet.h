@@ -8,6 +8,7 @@
 
 #include "base/record.h"
 #include "effect/effect.h"
+#include "effect/kinds.h"
 #include "geom/rigid.h"
 
 #include <stdint.h>
@@ -53,12 +54,6 @@ typedef struct sheet_source {
     double start, stop;
 } sheet_source;
 
-/* How a source is turned up or down: its rate or held value is multiplied; off, it does nothing. */
-typedef struct sheet_feed {
-    double strength;
-    bool off;
-} sheet_feed;
-
 typedef struct sheet_definition {
     int threads;
     double gravity[3];
@@ -70,7 +65,7 @@ typedef struct sheet_definition {
     rigid_boundary boundaries[SHEET_BOUNDARIES];
     sheet_notch notches[SHEET_NOTCHES];
     sheet_source sources[SHEET_SOURCES]; /* arrays are borrowed for the engine's life */
-    const sheet_feed *feeds;          /* [source_count]; NULL: all as they are */
+    const source_feed *feeds;          /* [source_count]; NULL: all as they are */
     int64_t count;
     const double *rest;               /* [count][3] */
     const double *position;           /* [count][3] at the start; NULL: rest */
@@ -149,7 +144,7 @@ typedef struct sheet_engine {
     status (*restore)(sheet *s, const record_list *list, report *r);
     /* Lists what runs within a step for effects in `mask`, in order. Returns how many; text has room for `limit` names. */
     int (*stages)(uint32_t mask, char (*text)[48], int limit);
-    void (*feed)(sheet *s, const sheet_feed *feeds);      /* [source_count], between steps */
+    void (*feed)(sheet *s, const source_feed *feeds);      /* [source_count], between steps */
     void (*surround)(sheet *s, const double gravity[3], double cfl); /* the definition's, anew; between steps */
     /* A knob was turned: values in the definition's materials changed. Between frames. Histories keep their values. */
     status (*refresh)(sheet *s, report *r);

@@ -121,7 +121,7 @@ struct sheet {
     real *whole;          // [pack_count][PACK], Σ laplace where curvature is known, −1 elsewhere
     double *weight_sum;   // [pack_count][PACK], w; NULL unless state-based
 
-    sheet_feed feeds[SHEET_SOURCES];
+    source_feed feeds[SHEET_SOURCES];
     int64_t bond_updates;
     double diffused_until; /* the time that θ has been brought to */
     group_result *results; // [group_count]

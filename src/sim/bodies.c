@@ -1,6 +1,8 @@
 #include "sim/bodies.h"
 
+#include "base/memory.h"
 #include "geom/fibres.h"
+#include "sim/sources.h"
 #include "sim/variations.h"
 
 #include <math.h>
@@ -67,6 +69,8 @@ void bodies_free(body_particles *p) {
     memory_free(p->body, n);
     memory_free(p->corner, 4 * sizeof(int32_t) * (size_t)p->element_count);
     memory_free(p->damage, n * sizeof(double));
+    for (int k = 0; k < p->source_count; k++)
+        memory_free((void *)(uintptr_t)p->sources[k].value, (size_t)p->sources[k].count * sizeof(double));
     memset(p, 0, sizeof *p);
 }
 
@@ -114,6 +118,21 @@ static status fill_body(const scene *s, int body, const point_set *points, doubl
     return code;
 }
 
+static status fill_sources(const scene *s, int body, int64_t first, int64_t count, body_particles *p, report *r) {
+    const scene_body *b = &s->bodies[body];
+    status code = STATUS_OK;
+    for (int k = 0; k < b->source_count && code == STATUS_OK; k++) {
+        const scene_source *from = &b->sources[k];
+        if (p->source_count == SOLID_SOURCES) return report_input(r, s->file, 0, "sources", "at most 64 sources in a scene", "more", NULL);
+        double *value = memory_allocate_array((size_t)count, sizeof *value);
+        if (!value) return report_set(r, STATUS_SYSTEM, "out of memory for the sources of a body");
+        p->sources[p->source_count++] =
+            (solid_source){.first = first, .count = count, .value = value, .fixed = from->fixed, .start = from->start, .stop = from->stop};
+        code = source_evaluate(s, from, BODY_SOURCES * (SCENE_SHEETS + body) + k, b->name, p->position + 3 * first, count, value, r);
+    }
+    return code;
+}
+
 status bodies_sample(const scene *s, body_particles *out, report *r) {
     double volumes[SCENE_BODIES];
     point_set points[SCENE_BODIES];
@@ -139,6 +158,7 @@ status bodies_sample(const scene *s, body_particles *out, report *r) {
     int64_t first = 0;
     for (int b = 0; b < s->body_count; b++) {
         if (code == STATUS_OK) code = fill_body(s, b, &points[b], volumes[b], first, out, r);
+        if (code == STATUS_OK) code = fill_sources(s, b, first, points[b].count, out, r);
         first += points[b].count;
         point_set_free(&points[b]);
     }

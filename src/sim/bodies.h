@@ -16,6 +16,8 @@ typedef struct body_particles {
     int given_count;
     const char *given_field[SOLID_GIVEN];
     double *given[SOLID_GIVEN];  // [count], what a parameter that varies in place is to its material's
+    int source_count;
+    solid_source sources[SOLID_SOURCES]; /* with arrays of their own, [count] of the source */
     uint8_t *material, *body;    // [count]; material index, plus the number of materials where a grip protects the particle
     /* Bodies of tetrahedra: particles are vertices; fibres and materials are the elements', [element_count]. */
     int64_t element_count; // 0: particles

@@ -73,8 +73,10 @@ status engine_begin_frame(simulation *s, report *r) {
     return s->solid ? s->engine->sort(s->solid, r) : STATUS_OK;
 }
 
-void engine_end_frame(simulation *s) {
-    if (s->sheet) s->sheets->settle(s->sheet, s->time);
+status engine_end_frame(simulation *s, report *r) {
+    status code = s->solid && s->engine->settle ? s->engine->settle(s->solid, s->time, r) : STATUS_OK;
+    if (code == STATUS_OK && s->sheet) s->sheets->settle(s->sheet, s->time);
+    return code;
 }
 
 double engine_bytes(const simulation *s) {
@@ -169,6 +171,8 @@ status engine_measure(const simulation *s, simulation_measures *m, report *r) {
     return STATUS_OK;
 }
 
+_Static_assert((int)SOLID_SOURCES == (int)SHEET_SOURCES, "one array of feeds serves both");
+
 /* ---- making ------------------------------------------------------------------------------------------------------ */
 
 static void motion_default(rigid_motion *m, const double pivot[3]) {
@@ -200,25 +204,33 @@ static uint32_t sheet_mask(const scene *s) {
     return mask;
 }
 
-/* By the index of the engine's sources. */
-static void list_feeds(const scene *s, sheet_feed out[SHEET_SOURCES]) {
-    int count = 0;
-    for (int b = 0; b < s->sheet_count; b++)
-        for (int k = 0; k < s->sheets[b].source_count && count < SHEET_SOURCES; k++)
-            out[count++] = (sheet_feed){s->sheets[b].sources[k].strength, s->sheets[b].sources[k].on == 0};
+static source_feed feed_of(const scene_source *from) {
+    return (source_feed){from->strength, from->on == 0};
+}
+
+int engine_feeds(const scene *s, engine_kind kind, source_feed out[SOLID_SOURCES]) {
+    int count = 0, bodies = kind == ENGINE_SHEET ? s->sheet_count : s->body_count;
+    for (int b = 0; b < bodies; b++) {
+        int sources = kind == ENGINE_SHEET ? s->sheets[b].source_count : s->bodies[b].source_count;
+        for (int k = 0; k < sources && count < SOLID_SOURCES; k++)
+            out[count++] = feed_of(kind == ENGINE_SHEET ? &s->sheets[b].sources[k] : &s->bodies[b].sources[k]);
+    }
+    return count;
 }
 
 status engine_refresh(simulation *s, report *r) {
     static const double still[3] = {0};
     const effect_values *gravity = &s->scene->effects[effect_index("gravity")], *damping = &s->scene->effects[effect_index("mass_damping")];
     const double *g = gravity->on ? gravity->value[0] : still;
+    source_feed feeds[SOLID_SOURCES];
     if (s->solid) {
         s->engine->surround(s->solid, g, damping->on ? damping->value[0][0] : 0);
+        (void)engine_feeds(s->scene, ENGINE_SOLID, feeds);
+        if (s->engine->feed) s->engine->feed(s->solid, feeds);
         s->engine->refresh(s->solid);
     }
     if (!s->sheet) return STATUS_OK;
-    sheet_feed feeds[SHEET_SOURCES];
-    list_feeds(s->scene, feeds);
+    (void)engine_feeds(s->scene, ENGINE_SHEET, feeds);
     s->sheets->feed(s->sheet, feeds);
     s->sheets->surround(s->sheet, g, s->scene->cfl);
     return s->sheets->refresh(s->sheet, r);
@@ -228,9 +240,9 @@ status engine_create_sheet(simulation *s, int threads, report *r) {
     const scene *from = s->scene;
     const sheet_particles *p = &s->sheet_points;
     sheet_definition *d = memory_allocate(sizeof *d);
-    sheet_feed feeds[SHEET_SOURCES];
+    source_feed feeds[SOLID_SOURCES];
     if (!d) return report_set(r, STATUS_SYSTEM, "out of memory for the plan");
-    list_feeds(from, feeds);
+    (void)engine_feeds(from, ENGINE_SHEET, feeds);
     *d = (sheet_definition){.threads = threads, .effect_mask = sheet_mask(from), .material_count = from->material_count, .body_count = p->body_count,
                             .notch_count = p->notch_count, .source_count = p->source_count, .count = p->count, .rest = p->rest,
                             .position = p->position, .velocity = p->velocity, .area = p->area, .grain = p->grain, .protected = p->protected, .feeds = feeds, .cfl = from->cfl};

@@ -39,7 +39,7 @@ void engine_limits(const simulation *s, double limit[EFFECT_LIMIT]);
 double engine_boundary_limit(const simulation *s, double speed);
 status engine_step(simulation *s, double dt, report *r);
 status engine_begin_frame(simulation *s, report *r);
-void engine_end_frame(simulation *s);
+status engine_end_frame(simulation *s, report *r);
 double engine_bytes(const simulation *s);
 /* Reads a field of one kind alone, as simulation_read. */
 int engine_read(const simulation *s, engine_kind kind, const char *field, double *out);
@@ -49,6 +49,8 @@ status engine_measure(const simulation *s, simulation_measures *m, report *r);
 int64_t engine_count(const simulation *s, engine_kind kind);
 /* Knobs were turned: the engines see the scene's values again. Between frames. Errors: memory; values that a sheet's bonds cannot have. */
 status engine_refresh(simulation *s, report *r);
+/* How sources of one kind are turned up or down, by the index of the engine's; returns how many. */
+int engine_feeds(const scene *s, engine_kind kind, source_feed out[SOLID_SOURCES]);
 int engine_define_boundaries(const scene *s, rigid_boundary *out);
 /* From sampled sheets; sets the plan's mask. */
 status engine_create_sheet(simulation *s, int threads, report *r);

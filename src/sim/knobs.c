@@ -41,19 +41,15 @@ static void add_effects(const scene *s, int material, knob_places *all) {
     }
 }
 
-/* Source number `number` of all sheets, in their order; NULL when there are fewer. */
-static scene_source *source_at(scene *s, int number) {
-    for (int b = 0; b < s->sheet_count; number -= s->sheets[b++].source_count)
-        if (number < s->sheets[b].source_count) return &s->sheets[b].sources[number];
-    return NULL;
+static scene_source *source_at(const scene *s, int number) {
+    return (scene_source *)(uintptr_t)scene_source_at(s, number);
 }
 
 static void add_sources(const scene *s, knob_places *all) {
-    for (int b = 0, number = 0; b < s->sheet_count; b++)
-        for (int k = 0; k < s->sheets[b].source_count; k++, number++) {
-            add_place(all, (knob_place){PLACE_SOURCE, -1, -1, 2 * number});
-            add_place(all, (knob_place){PLACE_SOURCE, -1, -1, 2 * number + 1});
-        }
+    for (int number = 0; scene_source_at(s, number); number++) {
+        add_place(all, (knob_place){PLACE_SOURCE, -1, -1, 2 * number});
+        add_place(all, (knob_place){PLACE_SOURCE, -1, -1, 2 * number + 1});
+    }
 }
 
 static bool is_declared(const scene_parameter *p) {
@@ -117,6 +113,7 @@ static void describe_table(const parameter *p, knob *k) {
     memcpy(k->fallback, p->fallback, sizeof k->fallback);
     k->live = p->live;
     k->logarithmic = p->logarithmic;
+    k->short_form = p->short_form != NULL;
     k->choices = p->choices;
     if (!p->live) snprintf(k->why_not, sizeof k->why_not, "%s: restart", p->why_not ? p->why_not : "the scene is made with it");
 }
@@ -185,13 +182,6 @@ int scene_knobs(const scene *start, const scene *now, knob *out, int limit) {
 
 /* ---- finding ----------------------------------------------------------------------------------------------------- */
 
-static bool has_short_form(const knob *k) {
-    int index = *k->effect ? effect_index(k->effect) : -1, count;
-    if (index < 0) return false;
-    const effect *e = effect_catalogue(&count)[index];
-    return e->parameters[effect_parameter(e, k->key)].short_form != NULL;
-}
-
 /* The forms that --set knows: key, effect.key, material.key, material.effect.key; of short forms the effect alone too. */
 static bool answers(const knob *k, const char *word) {
     char name[2 * KNOB_PATH];
@@ -200,7 +190,7 @@ static bool answers(const knob *k, const char *word) {
     if (*k->effect && strcmp(word, name) == 0) return true;
     snprintf(name, sizeof name, "%s.%s", k->owner, k->key);
     if (*k->owner && strcmp(word, name) == 0) return true;
-    if (!has_short_form(k)) return false;
+    if (!k->short_form) return false;
     snprintf(name, sizeof name, "%s%s%s", k->owner, *k->owner ? "." : "", k->effect);
     return strcmp(word, k->effect) == 0 || strcmp(word, name) == 0;
 }

@@ -25,6 +25,7 @@ typedef struct knob {
     bool live;             /* may be turned: it acts from the next frame on */
     bool logarithmic;      /* a slider should step it by factors */
     bool derived;          /* it follows from its twin, which the scene said or which was turned last */
+    bool short_form;       /* its effect may be written as a bare value that means it */
     bool varies;           /* a function of place: the value is the largest, and turning it scales all */
     int twin;              /* index of the knob that says the same thing in the same list, −1: none */
     char why_not[96];      /* what a knob that is not live needs, "" for those that are */

@@ -35,6 +35,14 @@ int effect_index(const char *name) {
     return -1;
 }
 
+int effect_index_of(engine_kind engine, const char *name) {
+    int count;
+    const effect *const *effects = effect_catalogue(&count);
+    for (int i = 0; i < count; i++)
+        if (effects[i]->engine == engine && strcmp(effects[i]->name, name) == 0) return i;
+    return -1;
+}
+
 status scene_function_evaluate(const scene_function *f, const double *input, int inputs, double *output, report *r) {
     if (!f->call) {
         for (int i = 0; i < f->outputs; i++) output[i] = f->constant[i];
@@ -73,6 +81,14 @@ scene *scene_copy(const scene *s) {
 
 void scene_copy_free(scene *copy) {
     memory_free(copy, copy ? sizeof *copy : 0);
+}
+
+const scene_source *scene_source_at(const scene *s, int number) {
+    for (int b = 0; b < s->body_count; number -= s->bodies[b++].source_count)
+        if (number < s->bodies[b].source_count) return &s->bodies[b].sources[number];
+    for (int b = 0; b < s->sheet_count; number -= s->sheets[b++].source_count)
+        if (number < s->sheets[b].source_count) return &s->sheets[b].sources[number];
+    return NULL;
 }
 
 int64_t scene_frames(const scene *s) {
@@ -181,6 +197,8 @@ static status check_fibres(const scene *s, const scene_body *b, report *r) {
     int wanted = 0;
     if (damage->on && damage->value[effect_parameter(damage_effect, "alpha")][0] != 0) wanted = 1;
     if (fibres->on || m->effects[effect_index("inextensible")].on) wanted = 1;
+    const effect_values *swelling = &m->effects[effect_index_of(ENGINE_SOLID, "swelling")];
+    if (swelling->on && swelling->given[effect_parameter(effects[effect_index_of(ENGINE_SOLID, "swelling")], "along")]) wanted = 1;
     if (damage->on && damage->value[effect_parameter(damage_effect, "alpha2")][0] != 0) wanted = 2;
     if (fibres->on && fibres->value[effect_parameter(fibre_effect, "gamma2")][0] != 0) wanted = 2;
     if (b->fibres.families >= wanted) return STATUS_OK;
@@ -225,6 +243,14 @@ static status check_notches(const scene *s, const scene_body *b, report *r) {
     return report_input(r, s->file, 0, "notches", expected, found, NULL);
 }
 
+/* What is fed must be able to spread. */
+static status check_sources(const scene *s, engine_kind engine, int count, const char *name, const scene_material *m, report *r) {
+    if (count == 0 || m->effects[effect_index_of(engine, "diffusion")].on) return STATUS_OK;
+    char found[160];
+    snprintf(found, sizeof found, "sources in %s '%.48s', whose material '%.48s' has none", engine == ENGINE_SHEET ? "sheet" : "body", name, m->name);
+    return report_input(r, s->file, 0, "sources", "a material with diffusion = { … }", found, NULL);
+}
+
 static status check_body(const scene *s, const scene_body *b, report *r) {
     double low[3], high[3];
     if (!b->shape) return report_input(r, s->file, 0, "shape", "a shape", "nothing", NULL);
@@ -236,7 +262,8 @@ static status check_body(const scene *s, const scene_body *b, report *r) {
         return report_input(r, s->file, 0, "material", "a material", "nothing", NULL);
     status code = check_discretisation(s, b, r);
     if (code == STATUS_OK) code = check_fibres(s, b, r);
-    return code == STATUS_OK ? check_notches(s, b, r) : code;
+    if (code == STATUS_OK) code = check_notches(s, b, r);
+    return code == STATUS_OK ? check_sources(s, ENGINE_SOLID, b->source_count, b->name, &s->materials[b->material], r) : code;
 }
 
 static status check_sheet(const scene *s, const scene_sheet *b, report *r) {
@@ -248,12 +275,7 @@ static status check_sheet(const scene *s, const scene_sheet *b, report *r) {
         snprintf(found, sizeof found, "none in sheet '%.48s', whose material '%.48s' has a grain", b->name, m->name);
         return report_input(r, s->file, 0, "grain", "a direction", found, NULL);
     }
-    if (b->source_count > 0 && !m->effects[effect_index("diffusion")].on) {
-        char found[160];
-        snprintf(found, sizeof found, "sources in sheet '%.48s', whose material '%.48s' has none", b->name, m->name);
-        return report_input(r, s->file, 0, "sources", "a material with diffusion = { … }", found, NULL);
-    }
-    return STATUS_OK;
+    return check_sources(s, ENGINE_SHEET, b->source_count, b->name, m, r);
 }
 
 static status check_numbers(const scene *s, report *r) {

@@ -16,7 +16,7 @@
 #include <stdint.h>
 
 enum { SCENE_MATERIALS = 16, SCENE_BODIES = 32, SCENE_GRIPS = 32, SCENE_COLLIDERS = 32, SCENE_NOTCHES = 64, SCENE_VARIATIONS = 8, SCENE_PARAMETERS = 512 };
-enum { SCENE_SHEETS = 16, SHEET_CUTS = 16, SHEET_FEEDS = 16 }; /* sheets; notches and sources of each */
+enum { SCENE_SHEETS = 16, SHEET_CUTS = 16, BODY_SOURCES = 16 }; /* sheets; notches of each; sources of each and of each solid */
 
 /* A constant, or a function of `inputs` reals (time, or x y z) giving `outputs` reals. */
 typedef struct scene_function {
@@ -53,6 +53,18 @@ typedef struct scene_fibres {
     scene_function direction; /* of place: 3 outputs (one family) or 6 (two); need not be unit or orthogonal */
 } scene_fibres;
 
+/* Feeds what diffuses in a body or a sheet. */
+typedef struct scene_source {
+    const shape *shape;   /* where; NULL: everywhere, or at the spots */
+    int spots;            /* how many round spots at random places, 0: none */
+    double radius;        /* of a spot */
+    scene_function value; /* of place, 1 output: a rate, or the value that is held */
+    bool fixed;           /* hold the value instead of adding it */
+    double start, stop;   /* on while start ≤ t < stop; stop may be HUGE_VAL */
+    double strength;      /* what it gives, or holds, is multiplied by this; 1 */
+    double on;            /* 1, or 0: it does nothing at all */
+} scene_source;
+
 typedef struct scene_body {
     char name[64];
     const shape *shape;
@@ -64,6 +76,8 @@ typedef struct scene_body {
     discretisation_kind discretisation;
     mesher_kind mesher;
     scene_function start;    /* of place at rest: where a vertex is at time 0, 3 outputs; tetrahedra only; absent means there */
+    int source_count;
+    scene_source sources[BODY_SOURCES];
 } scene_body;
 
 /* A cut that a sheet has from the start: a thin shape, or the straight line from … to. */
@@ -71,18 +85,6 @@ typedef struct scene_notch {
     const shape *shape; /* or NULL */
     double from[3], to[3];
 } scene_notch;
-
-/* Feeds what diffuses in a sheet. */
-typedef struct scene_source {
-    const shape *shape;   /* where; NULL: everywhere, or at the spots */
-    int spots;            /* how many round spots at random places, 0: none */
-    double radius;        /* of a spot */
-    scene_function value; /* of place, 1 output: a rate, or the value that is held */
-    bool fixed;           /* hold the value instead of adding it */
-    double start, stop;   /* on while start ≤ t < stop; stop may be HUGE_VAL */
-    double strength;      /* what it gives, or holds, is multiplied by this; 1 */
-    double on;            /* 1, or 0: it does nothing at all */
-} scene_source;
 
 typedef struct scene_sheet {
     char name[64];
@@ -97,7 +99,7 @@ typedef struct scene_sheet {
     scene_function velocity;
     int notch_count, source_count;
     scene_notch notches[SHEET_CUTS];
-    scene_source sources[SHEET_FEEDS];
+    scene_source sources[BODY_SOURCES];
 } scene_sheet;
 
 /* Grips take hold of grid nodes inside a moving region, or of a sheet's particles that are inside when they start, and prescribe their velocity. */
@@ -179,6 +181,9 @@ void scene_copy_free(scene *copy);
 /* Whether the scene's bodies are tetrahedra: all are, or none (scene_validate). */
 bool scene_is_tetrahedra(const scene *s);
 
+/* Source number `number` of all solids and then of all sheets, in their order; NULL when there are fewer. */
+const scene_source *scene_source_at(const scene *s, int number);
+
 /* The number of frames after the initial one: duration × fps, rounded. */
 int64_t scene_frames(const scene *s);
 
@@ -192,7 +197,10 @@ const effect *const *effect_catalogue(int *count);
 /* Where the sheet engine's effects begin in the catalogue. */
 int sheet_effects_first(void);
 
-/* The index of an effect by name in the catalogue, or -1. */
+/* The index of an effect by name in the catalogue, or -1; where both engines have one of that name, the solid engine's. */
 int effect_index(const char *name);
+
+/* The same of one engine alone. */
+int effect_index_of(engine_kind engine, const char *name);
 
 #endif

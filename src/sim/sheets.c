@@ -3,12 +3,13 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "geom/vector.h"
+#include "sim/sources.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { DEFAULT_SHEET_PARTICLES = 10000, STREAM_RIPPLE = 0x5c01, STREAM_SPOTS = 0x5c11 };
+enum { DEFAULT_SHEET_PARTICLES = 10000, STREAM_RIPPLE = 0x5c01 };
 
 /* ---- spacing ----------------------------------------------------------------------------------------------------- */
 
@@ -111,17 +112,6 @@ static status add_notches(const scene *s, int number, sheet_particles *p, report
     return STATUS_OK;
 }
 
-/* Random places are particles of the sheet: spots lie in it whatever its shape. */
-static bool in_spots(const scene *s, const scene_source *from, const sheet_body *body, int number, const sheet_particles *p, int64_t i) {
-    for (int k = 0; k < from->spots; k++) {
-        int64_t pick = body->first + (int64_t)(random_unit(s->seed, STREAM_SPOTS + (uint64_t)number, (uint64_t)k) * (double)body->count);
-        double difference[3];
-        vector_subtract(p->rest + 3 * i, p->rest + 3 * pick, difference);
-        if (vector_dot(difference, difference) <= from->radius * from->radius) return true;
-    }
-    return false;
-}
-
 static status fill_source(const scene *s, const scene_source *from, int owner, int stream, sheet_particles *p, report *r) {
     const sheet_body *body = &p->bodies[owner];
     if (p->source_count == SHEET_SOURCES) return report_input(r, s->file, 0, "sources", "at most 64 sources in a scene", "more", NULL);
@@ -130,16 +120,12 @@ static status fill_source(const scene *s, const scene_source *from, int owner, i
     sheet_source *out = &p->sources[p->source_count++];
     *out = (sheet_source){.particle = particle, .value = value, .fixed = from->fixed, .start = from->start, .stop = from->stop};
     if (!particle || !value) return report_set(r, STATUS_SYSTEM, "out of memory for the sources of a sheet");
-    status code = STATUS_OK;
-    for (int64_t i = body->first; i < body->first + body->count && code == STATUS_OK; i++) {
-        if (from->shape && shape_distance(from->shape, p->rest + 3 * i) >= 0) continue;
-        if (from->spots && !in_spots(s, from, body, stream, p, i)) continue;
-        particle[out->count] = (int32_t)i;
-        code = scene_function_evaluate(&from->value, p->rest + 3 * i, 3, &value[out->count], r);
-        if (value[out->count] != 0 || from->fixed) out->count++;
+    status code = source_evaluate(s, from, stream, s->sheets[owner].name, p->rest + 3 * body->first, body->count, value, r);
+    for (int64_t i = 0; i < body->count && code == STATUS_OK; i++) {
+        if (isnan(value[i])) continue;
+        particle[out->count] = (int32_t)(body->first + i);
+        value[out->count++] = value[i];
     }
-    if (code == STATUS_OK && out->count == 0)
-        code = report_input(r, s->file, 0, "sources", "a source that reaches a particle of its sheet", s->sheets[owner].name, NULL);
     return code;
 }
 
@@ -168,7 +154,7 @@ status sheets_sample(const scene *s, sheet_particles *out, report *r) {
         if (code == STATUS_OK) code = fill_sheet(s, k, &points[k], area[k], spacing[k], out, r);
         if (code == STATUS_OK) code = add_notches(s, k, out, r);
         for (int n = 0; n < s->sheets[k].source_count && code == STATUS_OK; n++)
-            code = fill_source(s, &s->sheets[k].sources[n], k, SHEET_FEEDS * k + n, out, r);
+            code = fill_source(s, &s->sheets[k].sources[n], k, BODY_SOURCES * k + n, out, r);
         point_set_free(&points[k]);
     }
     if (code != STATUS_OK) sheets_free(out);

@@ -36,6 +36,8 @@ static void define(simulation *s, int threads, solid_definition *d) {
                             .corner = s->particles.corner, .start = s->particles.start};
     for (int g = 0; g < s->particles.given_count; g++)
         d->given[d->given_count++] = (solid_given){s->particles.given_field[g], s->particles.given[g]};
+    d->source_count = s->particles.source_count;
+    memcpy(d->sources, s->particles.sources, sizeof d->sources);
     int gravity = effect_index("gravity"), damping = effect_index("mass_damping");
     if (from_scene->effects[gravity].on) memcpy(d->gravity, from_scene->effects[gravity].value[0], sizeof d->gravity);
     if (from_scene->effects[damping].on) d->damping = from_scene->effects[damping].value[0][0];
@@ -102,8 +104,11 @@ static status join_bodies(simulation *s, report *r) {
 static status create_solid(simulation *s, int threads, report *r) {
     solid_definition *d = memory_allocate(sizeof *d);
     status code = d ? bodies_sample(s->scene, &s->particles, r) : report_set(r, STATUS_SYSTEM, "out of memory for the plan");
+    source_feed feeds[SOLID_SOURCES];
     if (code == STATUS_OK) {
         define(s, threads, d);
+        (void)engine_feeds(s->scene, ENGINE_SOLID, feeds);
+        d->feeds = feeds;
         s->solid = s->engine->create(d, r);
         code = s->solid ? STATUS_OK : r->code;
     }
@@ -358,8 +363,8 @@ status simulation_advance(simulation *s, const atomic_int *abandon, report *r) {
     } while (--steps_left > 0);
     s->frame++;
     s->time = end; /* frames sit at exact multiples, not at sums of steps */
-    engine_end_frame(s);
-    return check_domain(s, r);
+    status code = engine_end_frame(s, r);
+    return code == STATUS_OK ? check_domain(s, r) : code;
 }
 
 int64_t simulation_frame(const simulation *s) {

@@ -58,8 +58,10 @@ static void plan_fields(solid *s) {
         }
     if (is_given(s, "density_scale")) add_field(s, "density_scale", 1);
     s->density_scale = find_index(s, "density_scale");
-    s->stiffness_scale = find_index(s, "stiffness_scale");
-    s->toughness_scale = find_index(s, "toughness_scale");
+    s->given_stiffness = s->stiffness_scale = find_index(s, "stiffness_scale");
+    s->given_toughness = s->toughness_scale = find_index(s, "toughness_scale");
+    if (find_index(s, "softened_stiffness") >= 0) s->stiffness_scale = find_index(s, "softened_stiffness");
+    if (find_index(s, "softened_strength") >= 0) s->toughness_scale = find_index(s, "softened_strength");
     s->viscosity_scale = find_index(s, "viscosity_scale");
     s->gamma_scale = find_index(s, "gamma_scale");
     s->damage_field = find_index(s, "damage");
@@ -69,6 +71,8 @@ static void plan_fields(solid *s) {
     s->tension_field = find_index(s, "fibre_tension");
     s->fibre_wave_field = find_index(s, "fibre_wave");
     s->snapped_field = find_index(s, "fibre_damage");
+    s->swelling_field = find_index(s, "swelling");
+    s->diffusion.field = find_index(s, "diffused");
     s->transfers_damage = s->damage_field >= 0;
 }
 
@@ -115,6 +119,7 @@ static void collect_limits(solid *s) {
     for (int32_t t = 0; t < s->tile_count; t++)
         for (int e = 0; e < s->effect_count; e++)
             s->limits[e] = fmax(s->limits[e], (double)s->tile_results[t].limit[e]);
+    s->limits[EFFECT_diffusion] = s->diffusion.rate;
 }
 
 static solid *create(const solid_definition *definition, report *r) {
@@ -141,6 +146,8 @@ static solid *create(const solid_definition *definition, report *r) {
         destroy(s);
         return NULL;
     }
+    diffusion_start(s);
+    diffusion_refresh(s);
     transfer_limits(s);
     collect_limits(s);
     return s;
@@ -210,11 +217,14 @@ static status solve_effects(solid *s, real dt, report *r) {
     return STATUS_OK;
 }
 
-static status constrain(solid *s, real dt, report *r) {
+/* A stage that runs once a step, by its place in solid_stages. */
+static status run_stage(solid *s, size_t offset, real dt, report *r) {
     for (int e = 0; e < s->effect_count; e++) {
-        if (!(s->mask >> e & 1) || !effects[e]->stages->constrain) continue;
+        status (*stage)(solid *, real, report *);
+        memcpy(&stage, (const char *)effects[e]->stages + offset, sizeof stage);
+        if (!(s->mask >> e & 1) || !stage) continue;
         double start = clock_seconds();
-        status code = effects[e]->stages->constrain(s, dt, r);
+        status code = stage(s, dt, r);
         s->solving[e] += clock_seconds() - start;
         if (code != STATUS_OK) return code;
     }
@@ -226,19 +236,20 @@ static status step(solid *s, double dt, solid_fault *fault, report *r) {
         status code = sort(s, r);
         if (code != STATUS_OK) return code;
     }
+    double start = clock_seconds();
+    status code = run_stage(s, offsetof(solid_stages, before), (real)dt, r);
+    if (code != STATUS_OK) return code;
     double t0 = clock_seconds();
     transfer_to_grid(s, (real)dt);
     double t1 = clock_seconds();
-    status solved = solve_effects(s, (real)dt, r);
-    if (solved != STATUS_OK) return solved;
+    if ((code = solve_effects(s, (real)dt, r)) != STATUS_OK) return code;
     grid_update(s, (real)dt);
-    status constrained = constrain(s, (real)dt, r);
-    if (constrained != STATUS_OK) return constrained;
+    if ((code = run_stage(s, offsetof(solid_stages, constrain), (real)dt, r)) != STATUS_OK) return code;
     double t2 = clock_seconds();
     transfer_to_particles(s, (real)dt);
     double t3 = clock_seconds();
     s->seconds[PHASE_P2G] += t1 - t0;
-    s->seconds[PHASE_GRID] += t2 - t1;
+    s->seconds[PHASE_GRID] += (t0 - start) + (t2 - t1);
     s->seconds[PHASE_G2P] += t3 - t2;
     return examine(s, dt, fault, r);
 }
@@ -264,6 +275,7 @@ static void refresh(solid *s) {
     memcpy(before, s->constants, sizeof before);
     solid_constants_refresh(s);
     hasten_limits(s, before);
+    diffusion_refresh(s);
     transfer_limits(s);
     s->limits[EFFECT_elastic] = 0;
     for (int32_t t = 0; t < s->tile_count; t++)
@@ -276,7 +288,7 @@ static int components(const solid *s, const char *field) {
 
 static double bytes_per_particle(const solid *s) {
     double bytes = (double)particles_bytes(s);
-    double node_reals = NODE + (s->damage_grid ? DAMAGE_NODE : 0) + (s->old_grid ? NODE : 0) + (s->implicit_grid ? IMPLICIT_PLANES : 0);
+    double node_reals = NODE + (s->damage_grid ? DAMAGE_NODE : 0) + (s->old_grid ? NODE : 0) + (s->implicit_grid ? IMPLICIT_PLANES : 0) + (s->diffusion.grid ? NODE : 0);
     double grid_bytes = (double)s->slot_capacity * BLOCK_NODES * node_reals * sizeof(real);
     grid_bytes += constraint_bytes(s);
     double tables = (double)s->tile_capacity * (sizeof *s->tiles + sizeof *s->tile_results) +
@@ -320,6 +332,7 @@ int solid_stage_names(const stage_place *places, int place_count, uint32_t mask,
 /* The stages of a step in the order in which transfer.c and grid.c call them. */
 static int stage_names(uint32_t mask, char (*text)[48], int limit) {
     static const stage_place places[] = {
+        {NULL, "before", offsetof(solid_stages, before)},
         {"p2g", "degrade", offsetof(solid_stages, degrade)}, {NULL, "stress", offsetof(solid_stages, stress)},
         {"solve", "solve", offsetof(solid_stages, solve)},
         {"grid", "grid", offsetof(solid_stages, grid)},      {NULL, "constrain", offsetof(solid_stages, constrain)},
@@ -339,7 +352,7 @@ static bool knows(const effect *e) {
 
 const solid_engine solid_engine_table = {
     .simd = TEXT(SOLID_SIMD_NAME), .precision = SUNDER_PRECISION, .effects = effects, .effect_count = SOLID_EFFECTS,
-    .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .sort = begin_frame, .step = step,
+    .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .sort = begin_frame, .step = step, .settle = diffusion_settle, .feed = diffusion_feed,
     .measure = solid_measure, .read = solid_read, .components = components, .save = solid_save, .restore = solid_restore,
     .stages = stage_names, .knows = knows, .surround = surround, .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = phases,
     .phase_names = {"sort", "p2g", "grid", "g2p"}, .effort = effort,

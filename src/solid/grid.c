@@ -63,6 +63,7 @@ static status reserve_slots(solid *s, int32_t slots, report *r) {
     size_t node_bytes = BLOCK_NODES * NODE * sizeof(real), damage_bytes = BLOCK_NODES * DAMAGE_NODE * sizeof(real);
     grid_free(s);
     status code = implicit_reserve(s, capacity, r);
+    if (code == STATUS_OK) code = diffusion_reserve(s, capacity, r);
     if (code == STATUS_OK) code = constraint_reserve(s, capacity, r);
     if (code != STATUS_OK) return code;
     s->slot_coordinate = memory_allocate_array(fresh, sizeof *s->slot_coordinate);
@@ -82,6 +83,7 @@ static status reserve_slots(solid *s, int32_t slots, report *r) {
 
 void grid_free(solid *s) {
     implicit_free(s);
+    diffusion_free(s);
     constraint_free(s);
     size_t slots = (size_t)s->slot_capacity;
     memory_free(s->slot_coordinate, s->slot_coordinate ? slots * sizeof *s->slot_coordinate : 0);

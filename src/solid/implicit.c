@@ -81,26 +81,6 @@ SIMD_INLINE void system_records(const solid *s, const solid_tile *tile, real *re
         }
 }
 
-/* Adds what particles that share a first node give. */
-SIMD_INLINE int system_run(const real *records, int p, int count, int nodes, real *window) {
-    real node = records[p * RECORD + P2G_NODE], *first = window + (int)node * NODE;
-    node_row sum[16] = {{{{0}}}};
-    for (; p < count && records[p * RECORD + P2G_NODE] == node; p++) {
-        const real *r = records + p * RECORD;
-        node_row value = row_multiply(row_spread(r + P2G_WZ), row_repeat(r + P2G_BASE));
-        for (int i = 0; i < nodes; i++) {
-            node_row here = row_scale(value, r[P2G_WX + i]);
-            for (int j = 0; j < nodes; j++) sum[i * nodes + j] = row_scale_add(here, r[P2G_WY + j], sum[i * nodes + j]);
-        }
-    }
-    for (int i = 0; i < nodes; i++)
-        for (int j = 0; j < nodes; j++) {
-            real *to = first + (i * STRIDE_X + j * STRIDE_Y) * NODE;
-            row_store(to, row_add(row_load(to), sum[i * nodes + j]));
-        }
-    return p;
-}
-
 /* A particle's record for B: weights, weights × distances in dx, V l0² D⁻². */
 enum { OF_WX = 0, OF_WY = 4, OF_WZ = 8, OF_MX = 12, OF_MY = 16, OF_MZ = 20, OF_FACTOR = 24, OF_NODE = 25 };
 
@@ -193,7 +173,7 @@ SIMD_INLINE void system_block(const pass_context *c, int32_t index, int worker, 
         const solid_tile *tile = &s->tiles[t];
         if (!tile_is_implicit(s, tile)) continue;
         system_records(s, tile, records, kind, c->dt);
-        for (int p = 0; p < tile->count;) p = system_run(records, p, tile->count, kind == KERNEL_QUADRATIC ? 3 : 4, window);
+        for (int p = 0; p < tile->count;) p = scatter_plain_run(records, p, tile->count, kind == KERNEL_QUADRATIC ? 3 : 4, window);
     }
     bool wide = kernels_are_wide(s->definition.kernel, s->definition.laplacian, true);
     exchange_window(b, window, s->implicit_grid, NODE, PLANES * BLOCK_NODES, wide, true);

@@ -12,7 +12,7 @@ static solid_measures empty_measures(void) {
 }
 
 /* ρ0 V |C|² D/2: the kinetic energy of the affine part, and its angular momentum m D ε:C. */
-static void add_particle(const solid *s, const solid_tile *tile, int p, double inertia, solid_measures *m) {
+static void add_particle(const solid *s, const solid_tile *tile, int p, double inertia, double capacity, solid_measures *m) {
     int32_t pack = tile->first_pack + p / PACK;
     int lane = p % PACK;
     const int32_t *block = s->blocks[tile->block].coordinate;
@@ -33,6 +33,7 @@ static void add_particle(const solid *s, const solid_tile *tile, int p, double i
     }
     double J = matrix_determinant(F);
     m->mass += mass;
+    if (capacity > 0) m->diffused_total += capacity * mass * (double)field_at(&s->fields[s->diffusion.field], pack, 0, 0)[lane];
     m->kinetic += 0.5 * mass * (speed2 + inertia * affine2);
     m->angular_momentum[0] += mass * (x[1] * v[2] - x[2] * v[1] + inertia * (C[7] - C[5]));
     m->angular_momentum[1] += mass * (x[2] * v[0] - x[0] * v[2] + inertia * (C[2] - C[6]));
@@ -88,9 +89,10 @@ static void measure_tile(void *context, int64_t i, int worker) {
     m->elastic = w.energy[0];
     m->fibre = w.energy[1];
     double inertia = s->definition.dx * s->definition.dx / (s->definition.kernel == KERNEL_QUADRATIC ? 4 : 3);
+    double capacity = diffusion_capacity(s, w.tile);
     bool damaged = s->material_damaged[w.tile->material];
     for (int p = 0; p < w.tile->count; p++) {
-        add_particle(s, w.tile, p, inertia, m);
+        add_particle(s, w.tile, p, inertia, capacity, m);
         if (s->fibre_field >= 0) add_stretch(s, w.tile, p, m);
         if (damaged) add_damage(s, w.tile, p, m);
         else m->histogram[0] += 1;
@@ -107,6 +109,7 @@ static void add_part(solid_measures *m, const solid_measures *part) {
     m->elastic += part->elastic;
     m->fibre += part->fibre;
     m->gravitational += part->gravitational;
+    m->diffused_total += part->diffused_total;
     m->damage_mean += part->damage_mean;
     m->damage_max = fmax(m->damage_max, part->damage_max);
     m->broken_fraction += part->broken_fraction;

@@ -76,6 +76,26 @@ SIMD_INLINE int scatter_run(const real *records, int p, int count, int nodes, co
     return p;
 }
 
+/* Adds w times four reals at P2G_BASE of particles that share a first node. */
+SIMD_INLINE int scatter_plain_run(const real *records, int p, int count, int nodes, real *window) {
+    real node = records[p * RECORD + P2G_NODE], *first = window + (int)node * NODE;
+    node_row sum[16] = {{{{0}}}};
+    for (; p < count && records[p * RECORD + P2G_NODE] == node; p++) {
+        const real *r = records + p * RECORD;
+        node_row value = row_multiply(row_spread(r + P2G_WZ), row_repeat(r + P2G_BASE));
+        for (int i = 0; i < nodes; i++) {
+            node_row here = row_scale(value, r[P2G_WX + i]);
+            for (int j = 0; j < nodes; j++) sum[i * nodes + j] = row_scale_add(here, r[P2G_WY + j], sum[i * nodes + j]);
+        }
+    }
+    for (int i = 0; i < nodes; i++)
+        for (int j = 0; j < nodes; j++) {
+            real *to = first + (i * STRIDE_X + j * STRIDE_Y) * NODE;
+            row_store(to, row_add(row_load(to), sum[i * nodes + j]));
+        }
+    return p;
+}
+
 /* One particle: Σ w v_i and Σ w v_i (x_i − x_p)ᵀ by separable sums, y first, then x, then z. Results in the record: velocity, then the three
  * columns. */
 SIMD_INLINE void gather_particle(real *r, int nodes, const node_row node_offset, const real *window) {

@@ -47,7 +47,10 @@ status solid_save(const solid *s, record_list *list, report *r) {
         if (code != STATUS_OK) return code;
         memcpy(data, s->fields[i].data, (size_t)s->pack_count * (size_t)s->fields[i].components * PACK * sizeof(real));
     }
-    return STATUS_OK;
+    if (s->diffusion.field < 0) return STATUS_OK;
+    code = record_add(list, "solid/diffusion_clocks", RECORD_F64, 2, 1, NULL, &data, r);
+    if (code == STATUS_OK) memcpy(data, (double[]){s->diffusion.clock, s->diffusion.until}, 2 * sizeof(double));
+    return code;
 }
 
 static status restore_tables(solid *s, const record_list *list, report *r) {
@@ -94,6 +97,10 @@ status solid_restore(solid *s, const record_list *list, report *r) {
         if (code != STATUS_OK) return code;
         memcpy(s->fields[i].data, data, (size_t)s->pack_count * (size_t)s->fields[i].components * PACK * sizeof(real));
     }
+    double *clocks;
+    code = s->diffusion.field < 0 ? STATUS_OK : record_require(list, "solid/diffusion_clocks", RECORD_F64, 2, 1, (void **)&clocks, r);
+    if (code != STATUS_OK) return code;
+    if (s->diffusion.field >= 0) s->diffusion.clock = clocks[0], s->diffusion.until = clocks[1];
     s->sorted = false; /* the grid's tables are rebuilt with the sort that opens every frame */
     return STATUS_OK;
 }

@@ -12,7 +12,7 @@
 
 #include <stdint.h>
 
-enum { SOLID_MATERIALS = 32, SOLID_BOUNDARIES = 64, SOLID_BINS = 50, SOLID_PHASES = 4, SOLID_GIVEN = 8 };
+enum { SOLID_MATERIALS = 32, SOLID_BOUNDARIES = 64, SOLID_BINS = 50, SOLID_PHASES = 4, SOLID_GIVEN = 8, SOLID_SOURCES = 64 };
 
 typedef struct solid_material {
     double density;
@@ -27,6 +27,14 @@ typedef struct solid_given {
     const char *field;
     const double *value; /* [count] */
 } solid_given;
+
+/* Feeds what diffuses: adds `value` a unit of time, or holds it at `value`, while start ≤ t < stop. */
+typedef struct solid_source {
+    int64_t first, count; /* ids that it may reach */
+    const double *value;  // [count], quantity/time (a rate of θ itself) or quantity; NaN: nothing
+    bool fixed;
+    double start, stop;
+} solid_source;
 
 typedef struct solid_definition {
     int threads;
@@ -48,6 +56,9 @@ typedef struct solid_definition {
     int given_count;
     solid_given given[SOLID_GIVEN];    /* fields by which a material's parameters are scaled; "density_scale" its density */
     const uint8_t *material;           /* [count] */
+    int source_count;
+    solid_source sources[SOLID_SOURCES]; /* arrays are borrowed for the engine's life */
+    const source_feed *feeds;          /* [source_count]; NULL: all as they are */
     /* A body of tetrahedra: particles are its vertices, `position` their places at rest. Fibres and
      * `material` are the elements'; `volume` is not read. */
     int64_t element_count;         /* 0: material points */
@@ -61,6 +72,7 @@ typedef struct solid_measures {
     double grip_work, grip_impulse[3]; /* put in by boundaries since the start */
     double damage_mean, damage_max, broken_fraction; /* broken: d > 0.9, of all particles */
     double histogram[SOLID_BINS];                    /* fraction of particles by damage */
+    double diffused_total;                           /* Σ ρ C V θ */
     double determinant_min, determinant_max, speed_max;
     double stretch_min, stretch_max; /* |F a1| of the first fibre family; 1 where there is none */
     int64_t constraint_solves, constraint_iterations, constraint_factorisations; /* of inextensible fibres, since the start */
@@ -94,6 +106,9 @@ typedef struct solid_engine {
     status (*sort)(solid *s, report *r);
     /* One step of symplectic Euler. STATUS_DIVERGED when the new state is not finite or runs away; `fault` says where. */
     status (*step)(solid *s, double dt, solid_fault *fault, report *r);
+    /* Diffusion runs every n-th step: this brings it to `time`, as a frame must have it. NULL where nothing diffuses ever. Errors: out of memory. */
+    status (*settle)(solid *s, double time, report *r);
+    void (*feed)(solid *s, const source_feed *feeds); /* [source_count], between steps; NULL likewise */
     status (*measure)(const solid *s, solid_measures *m, report *r); /* errors: out of memory */
     /* Copies a field in order of id into out[count][components]: "position", "velocity", "deformation_gradient", "affine_velocity", "volume", "kirchhoff_stress"
      * (of the effects' stress stages: xx yy zz xy yz xz; particles only), or a field of an effect that is on. Returns components, 0 when there is no such field. */

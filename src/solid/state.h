@@ -31,7 +31,7 @@ enum {
     WINDOW_NODES = WINDOW * WINDOW * WINDOW,
     NEIGHBOURS = 27,
     CONSTANTS = 16,      /* reals an effect may derive from a material's values */
-    EFFECT_FIELDS = 16,
+    EFFECT_FIELDS = 20,
     IMPLICIT_WINDOWS = 4, /* reals a node that a solve on the grid scatters together */
     IMPLICIT_PLANES = 8,  /* reals a node that the implicit solve keeps */
 };
@@ -140,6 +140,17 @@ typedef struct fibre_constraint {
     constraint_sums *sums; // [capacity]
 } fibre_constraint;
 
+/* What diffuses (effects/diffusion.c). */
+typedef struct solid_diffusion {
+    int field;            /* θ's index; −1: nothing diffuses */
+    double clock, until;  /* the time, and the time that θ has been brought to */
+    double rate;          /* of the fastest exchange, 1/time */
+    real unit;            /* what makes weights of the order of 1 */
+    int32_t capacity;
+    real *grid;           // [capacity][BLOCK_NODES][NODE]
+    source_feed feeds[SOLID_SOURCES];
+} solid_diffusion;
+
 /* Per-block results of a pass, reduced in block order so that bits do not depend on threads. */
 typedef struct block_result {
     double grip_work, grip_impulse[3];
@@ -169,6 +180,7 @@ struct solid {
     real *implicit_grid;   // [implicit_capacity][IMPLICIT_PLANES][BLOCK_NODES], implicit.c
     double *implicit_sums; // [implicit_capacity][2]
     fibre_constraint constraint;
+    solid_diffusion diffusion;
 
     int64_t count;
     int32_t pack_count, pack_capacity;
@@ -176,7 +188,8 @@ struct solid {
     int field_count;
     solid_field fields[FIELD_LIMIT];
     int density_scale, stiffness_scale, toughness_scale, viscosity_scale, gamma_scale; /* the same: parameters that vary in place */
-    int damage_field, history_field, fibre_field, fibre2_field, tension_field, fibre_wave_field, snapped_field; /* indices, −1 when absent */
+    int given_stiffness, given_toughness; /* of those the ones that the definition brings, where softening has its own */
+    int damage_field, history_field, fibre_field, fibre2_field, tension_field, fibre_wave_field, snapped_field, swelling_field; /* indices, −1 when absent */
 
     int32_t tile_count, tile_capacity, result_capacity, block_count, block_capacity, colour_capacity;
     solid_tile *tiles;
@@ -259,6 +272,9 @@ typedef struct solid_stages {
      * bound of the largest eigenvalue of ∂²Ψ/∂F², added to scratch->wave_modulus. */
     void (*piola)(tile_work *w);
     void (*stiffness)(tile_work *w);
+    /* Before the way to the grid, once a step of `dt`. */
+    status (*before)(solid *s, real dt, report *r);
+    void (*feel)(tile_work *w); /* after what diffuses has changed */
     /* Between the way to the grid and the grid's update, once a step: for what must be solved for. */
     status (*solve)(solid *s, real dt, report *r);
     /* After the grid's update, once a step: what must hold for its velocities. */
@@ -293,7 +309,7 @@ SIMD_INLINE double scale_of(const solid *s, int field, int32_t pack, int lane) {
 
 /* Whether some kernel of this state is four nodes wide. */
 static inline bool kernels_have_cubic(const solid *s) {
-    return s->definition.kernel == KERNEL_CUBIC || (s->transfers_damage && s->definition.laplacian == KERNEL_CUBIC);
+    return s->definition.kernel == KERNEL_CUBIC || ((s->transfers_damage || s->diffusion.field >= 0) && s->definition.laplacian == KERNEL_CUBIC);
 }
 
 /* particles.c */
@@ -330,6 +346,15 @@ SIMD_INLINE vec implicit_damage(vec d, vec H, vec spread, vec rate) {
     vec solved = vec_fma(rate, d, H + spread) / (H + (rate + 1));
     return vec_min(vec_max(solved, d), vec_all(1));
 }
+/* effects/diffusion.c: memory for a number of slots; what a state starts with; what constants have changed; effects of θ as it is; θ brought to
+ * a time; ρ-less capacity of a tile's material */
+status diffusion_reserve(solid *s, int32_t slots, report *r);
+void diffusion_free(solid *s);
+void diffusion_start(solid *s);
+void diffusion_refresh(solid *s);
+void diffusion_feed(solid *s, const source_feed *feeds);
+status diffusion_settle(solid *s, double time, report *r);
+double diffusion_capacity(const solid *s, const solid_tile *tile);
 /* measure.c; reading: particles_read, and what stages compute */
 status solid_measure(const solid *s, solid_measures *m, report *r);
 int solid_read(const solid *s, const char *field, double *out);

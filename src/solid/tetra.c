@@ -274,7 +274,7 @@ static int stage_names(uint32_t mask, char (*text)[48], int limit) {
 /* What runs before forces, follows a history or solves on the grid has no place here; nor has stress that is known as τ only. */
 static bool knows(const effect *e) {
     const solid_stages *s = e->stages;
-    return !s->degrade && !s->update && !s->solve && !s->constrain && !s->stress == !s->piola;
+    return !s->before && !s->feel && !s->degrade && !s->update && !s->solve && !s->constrain && !s->stress == !s->piola;
 }
 
 static void surround(solid *s, const double gravity[3], double damping) {

@@ -418,6 +418,21 @@ def test_inversion():
         check(stuck["determinant_max"] < 1e-6, "without fibres a point stays a point")
 
 
+def test_wet_bread():
+    with Box() as box:
+        torn, wet = {}, None
+        for name, water in (("dry", 0), ("wet", 1)):
+            run = box.run("wet_bread", None, 5000, water=water, duration=2)
+            broken_at = [place[0] for place, d in frames.damaged(run) if d > 0.8 and abs(place[0]) < 0.42 and place[1] < 0.06]
+            torn[name] = sum(broken_at) / max(1, len(broken_at))
+            check(len(broken_at) > 30, f"{name}: it is torn: {len(broken_at)} particles")
+            wet = frames.read(run, run["frames"], "diffused") if water else wet
+        print("  torn at x =", {name: round(x, 3) for name, x in torn.items()}, "moisture", round(min(wet), 3), "…", round(max(wet), 3))
+        check(abs(torn["dry"] + 0.2) < 0.08, f"dry bread tears at its notch: {torn}")
+        check(abs(torn["wet"] - 0.2) < 0.12, f"wet bread where it is wet: {torn}")
+        check(-1e-6 <= min(wet) and max(wet) <= 1 + 1e-6, "moisture stays between dry and the drop's")
+
+
 def mean_height(run, number, keep):
     rest, now = frames.places(run, 0), frames.places(run, number)
     heights = [now[i][1] - place[1] for i, place in rest.items() if keep(place)]

@@ -49,7 +49,10 @@ static inline scene *test_scene(const shape *(*make)(arena *), double E, double 
 
 /* Switches an effect of a material on and gives it a value by key. */
 static inline void test_set_material(scene *s, int material, const char *effect_name, const char *key, double value) {
-    int count, e = effect_index(effect_name);
+    bool of_sheet = false;
+    for (int k = 0; k < s->sheet_count; k++) of_sheet |= s->sheets[k].material == material;
+    int count, e = effect_index_of(of_sheet ? ENGINE_SHEET : ENGINE_SOLID, effect_name);
+    if (e < 0) e = effect_index(effect_name);
     const effect *table = effect_catalogue(&count)[e];
     effect_values *v = &s->materials[material].effects[e];
     v->on = true;

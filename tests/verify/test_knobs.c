@@ -190,6 +190,22 @@ static scene *multirate_sheets(void) {
     return s;
 }
 
+/* A bar that is fed, swells along and across its fibres and softens while it tears. */
+static scene *wet_bar(void) {
+    scene *s = explicit_damage();
+    scene_body *b = &s->bodies[0];
+    b->sources[b->source_count++] = (scene_source){.value = {.outputs = 1, .constant = {4}}, .stop = HUGE_VAL, .strength = 1, .on = 1};
+    b->sources[b->source_count++] = (scene_source){.shape = shape_sphere(s->memory, (const double[]){0, 0.1, 0}, 0.2), .fixed = true, .strength = 1, .on = 1,
+                                                   .value = {.outputs = 1, .constant = {0.7}}, .stop = HUGE_VAL};
+    test_set(s, "diffusion", "k", 3);
+    test_set(s, "diffusion", "decay", 0.5);
+    test_set(s, "swelling", "alpha", 0.05);
+    test_set(s, "swelling", "along", -0.02);
+    test_set(s, "softening", "stiffness", 0.3);
+    test_set(s, "softening", "strength", 0.4);
+    return s;
+}
+
 /* A bar and a sheet in one scene. */
 static scene *both_kinds(void) {
     scene *s = sheet_scene("linear"), *from = explicit_damage();
@@ -430,6 +446,10 @@ static void turns_act_in_sheets_of_many_rates(void) {
     turn_all(multirate_sheets);
 }
 
+static void turns_act_in_wet_bodies(void) {
+    turn_all(wet_bar);
+}
+
 static void turns_act_where_solids_and_sheets_are(void) {
     turn_all(both_kinds);
 }
@@ -599,6 +619,7 @@ int main(void) {
     RUN(turns_act_in_plastic_sheets);
     RUN(a_turn_that_the_engine_refuses_leaves_no_trace);
     RUN(turns_act_in_sheets_of_many_rates);
+    RUN(turns_act_in_wet_bodies);
     RUN(turns_act_where_solids_and_sheets_are);
     RUN(every_live_parameter_of_every_effect_acts);
     return check_finish();

@@ -159,10 +159,10 @@ static void gravity_and_sources_are_turned(void) {
     arena *memory = arena_create("knobs");
     patch *a = busy_sheet(memory, &none, 100), *b = busy_sheet(memory, &none, 100);
     b->d.gravity[2] = -3;
-    b->d.feeds = &(sheet_feed){.strength = 0.25};
+    b->d.feeds = &(source_feed){.strength = 0.25};
     CHECK(patch_start(a, 64, "auto", 1) && patch_start(b, 64, "auto", 1));
     a->engine->surround(a->state, (const double[]){0, 0, -3}, a->d.cfl);
-    a->engine->feed(a->state, &(sheet_feed){.strength = 0.25});
+    a->engine->feed(a->state, &(source_feed){.strength = 0.25});
     CHECK(refresh(a, &none));
     go(a, &turned);
     go(b, &made);

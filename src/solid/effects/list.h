@@ -10,6 +10,9 @@
     X(corotated) /* or this: a material has one elastic model */                                                       \
     X(fibres)                                                                                                          \
     X(snapping) /* of fibres */                                                                                        \
+    X(diffusion) /* of moisture or heat */                                                                             \
+    X(swelling)  /* by it */                                                                                           \
+    X(softening)                                                                                                       \
     X(gravity)                                                                                                         \
     X(mass_damping)                                                                                                    \
     X(boundary) /* grips and colliders on the grid's velocities */                                                     \

@@ -14,7 +14,7 @@ local p = s.params {
   duration  = { 2.5, unit = "time", doc = "a second of dripping, then the pull" },
   fps       = 24,
   water     = { 1, unit = "1", doc = "moisture that the drop holds; 0: dry", min = 0 },
-  pull      = { 0.12, unit = "length/time", doc = "speed of each grip", min = 0 },
+  pull      = { 0.05, unit = "length/time", doc = "speed of each grip", min = 0 },
 }
 
 local half, thick = 0.5, 0.12
@@ -34,7 +34,7 @@ return s.scene {
     shape    = s.box { min = { -half, -thick, -thick }, max = { half, thick, thick } },
     material = s.recipe "bread",
     notches  = { s.box { min = { -0.22, thick - 0.05, -1 }, max = { -0.18, 1, 1 } } },
-    sources  = p.water > 0 and { { shape = s.sphere { center = { 0.2, thick, 0 }, radius = 0.11 }, value = p.water } } or {},
+    sources  = p.water > 0 and { { shape = s.sphere { center = { 0.2, thick, 0 }, radius = 0.16 }, value = p.water } } or {},
   } },
   grips = { grip(-1), grip(1) },
 }

@@ -351,6 +351,16 @@ static bool can_turn(const rig *g, const knob *k, const double value[3]) {
     return can;
 }
 
+/* A word that both engines have means that of the engine whose bodies have the material. */
+static int effect_of(const rig *g, const knob *k) {
+    scene *s = g->make();
+    bool of_sheet = false;
+    for (int b = 0; b < s->sheet_count; b++) of_sheet |= s->sheets[b].material == k->material;
+    int e = effect_index_of(of_sheet ? ENGINE_SHEET : ENGINE_SOLID, k->effect);
+    scene_destroy(s);
+    return e;
+}
+
 static void turn_one(const rig *g, const knob *k) {
     double value[3];
     record_list after = {0};
@@ -365,7 +375,7 @@ static void turn_one(const rig *g, const knob *k) {
     if (*k->effect) {
         /* Regions of many rates are made anew at every turn: what acts there alone has been forgotten where a turn changes only what it must. */
         if (g->make == multirate_sheets && strcmp(k->effect, "multirate") != 0) return;
-        int count, e = effect_index(k->effect);
+        int count, e = effect_of(g, k);
         acted[e][effect_parameter(effect_catalogue(&count)[e], k->key)] = true;
     } else {
         CHECK(straight != g->unturned);

@@ -75,6 +75,6 @@ int cli_add_setting(cli_scene_options *o, const char *name, const char *text);
 int cli_number(const char *name, const char *option, const char *text, long low, long high, long *value);
 
 /* What `check` and `explain` say of a scene with both kinds. */
-#define NOTE_NO_CONTACT "sheets and solids share time, gravity, grips and colliders, but pass through one another: they do not touch"
+#define NOTE_NO_CONTACT "sheets and solids share time, gravity, grips and colliders, but pass through one another: contact = { … } makes them touch"
 
 #endif

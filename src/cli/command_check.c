@@ -11,7 +11,8 @@ static const struct option long_options[] = {
 /* What is no error, but may not be what was meant. */
 static const char *find_note(script *s) {
     const scene *from = s ? script_scene(s) : NULL;
-    return from && from->body_count > 0 && from->sheet_count > 0 ? NOTE_NO_CONTACT : NULL;
+    bool apart = from && from->body_count > 0 && from->sheet_count > 0 && !from->effects[effect_index("contact")].on;
+    return apart ? NOTE_NO_CONTACT : NULL;
 }
 
 static void print_json(const script_reports *reports, const char *note) {

@@ -62,7 +62,7 @@ static void print_text(const simulation *state, const scene *s, const simulation
         shape_describe(s->sheets[b].region.shape, text, sizeof text);
         printf("%ssheet of %s, %s, thickness %.4g\n", b + s->body_count ? "             " : "", text, s->materials[s->sheets[b].material].name, s->sheets[b].thickness);
     }
-    if (p->solid && p->sheet) printf("             %s\n", NOTE_NO_CONTACT);
+    if (p->solid && p->sheet && !s->effects[effect_index("contact")].on) printf("             %s\n", NOTE_NO_CONTACT);
     puts("\n  effects");
     for (int e = 0; e < p->effect_count; e++)
         if (simulation_concerns(p, e)) printf("    %-3s %-14s %s\n", p->mask >> e & 1 ? "on" : "off", p->effects[e]->name, p->effects[e]->doc);

@@ -129,11 +129,12 @@ typedef struct sheet_engine {
     void (*limits)(const sheet *s, double *limit);
     /* One step of symplectic Euler from `time`. STATUS_DIVERGED when the new state is not finite or runs away; `fault` says where. */
     status (*step)(sheet *s, double time, double dt, sheet_fault *fault, report *r);
+    void (*push)(sheet *s, const double *change); /* adds change[count][3], in order of id, to velocities; between steps */
     /* Diffusion runs every n-th step: this brings it to `time`, as a frame must have it. */
     void (*settle)(sheet *s, double time);
     status (*measure)(const sheet *s, sheet_measures *m, report *r); /* errors: out of memory */
-    /* Copies a field in order of id into out[count][components]: "position", "velocity", "area", "broken" (fraction of bonds),
-     * "diffused". Returns components, 0 when there is no such field. */
+    /* Copies a field in order of id into out[count][components]: "position", "velocity", "area", "held" (1: by a grip), "broken" (fraction
+     * of bonds), "diffused". Returns components, 0 when there is no such field. */
     int (*read)(const sheet *s, const char *field, double *out);
     int (*components)(const sheet *s, const char *field);
     /* Bonds, each once: pairs [n][2] of ids, smaller first, in ascending order, and whether each is broken. Either may be NULL. Returns n. */

@@ -1,7 +1,7 @@
 /* One face for both engines: a simulation has one, or the other, or both side by side. They share the step, gravity, grips and colliders; solids and
- * sheets pass through one another. */
+ * sheets pass through one another unless the scene says `contact`. */
 #include "base/memory.h"
-#include "sim/internal.h"
+#include "sim/contact.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -66,7 +66,9 @@ status engine_step(simulation *s, double dt, report *r) {
     sheet_fault sheet_trouble;
     engine_share_boundaries(s);
     status code = s->solid ? s->engine->step(s->solid, dt, &fault, r) : STATUS_OK;
-    return code == STATUS_OK && s->sheet ? s->sheets->step(s->sheet, s->time, dt, &sheet_trouble, r) : code;
+    if (code == STATUS_OK && s->sheet) code = s->sheets->step(s->sheet, s->time, dt, &sheet_trouble, r);
+    if (code == STATUS_OK && s->contact) contact_apply(s, dt);
+    return code;
 }
 
 status engine_begin_frame(simulation *s, report *r) {

@@ -313,6 +313,9 @@ status scene_validate(scene *s, report *r) {
     for (int i = 0; i < s->sheet_count && code == STATUS_OK; i++) code = check_sheet(s, &s->sheets[i], r);
     if (code == STATUS_OK && s->body_count == 0 && s->effects[effect_index("mass_damping")].on)
         code = report_input(r, s->file, 0, "mass_damping", "damping = … in the sheet's material", "mass_damping, which is for solids", NULL);
+    if (code == STATUS_OK && s->effects[effect_index("contact")].on && (s->body_count == 0 || s->sheet_count == 0 || scene_is_tetrahedra(s)))
+        code = report_input(r, s->file, 0, "contact", "sheets, and solids of particles: it is theirs with one another",
+                            scene_is_tetrahedra(s) ? "solids of tetrahedra" : "one kind alone", NULL);
     if (code != STATUS_OK) return code;
     s->effects[effect_index("boundary")].on = s->grip_count + s->collider_count > 0;
     return STATUS_OK;

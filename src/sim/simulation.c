@@ -1,8 +1,8 @@
 /* Scene → plan → stepping. */
 #include "base/memory.h"
 #include "base/threads.h"
+#include "sim/contact.h"
 #include "sim/crack.h"
-#include "sim/internal.h"
 
 #include <float.h>
 #include <math.h>
@@ -132,6 +132,8 @@ static status create_engines(simulation *s, int threads, report *r) {
     s->count = s->particles.count + s->sheet_points.count;
     if (code == STATUS_OK && s->solid && s->sheet) code = join_bodies(s, r);
     if (code != STATUS_OK) return code;
+    if (s->solid && s->sheet && s->scene->effects[effect_index("contact")].on && !(s->contact = contact_create(s)))
+        return report_set(r, STATUS_SYSTEM, "out of memory for the contact of sheets and solids");
     make_plan(s, s->plan.mask, threads);
     if (s->solid) bodies_free_loading(&s->particles);
     return STATUS_OK;
@@ -192,6 +194,7 @@ void simulation_destroy(simulation *s) {
     if (!s) return;
     if (s->solid) s->engine->destroy(s->solid);
     if (s->sheet) s->sheets->destroy(s->sheet);
+    contact_destroy(s->contact);
     memory_free(s->bodies, (size_t)s->count);
     sheets_free(&s->sheet_points);
     bodies_free(&s->particles);

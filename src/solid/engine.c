@@ -352,7 +352,7 @@ static bool knows(const effect *e) {
 
 const solid_engine solid_engine_table = {
     .simd = TEXT(SOLID_SIMD_NAME), .precision = SUNDER_PRECISION, .effects = effects, .effect_count = SOLID_EFFECTS,
-    .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .sort = begin_frame, .step = step, .settle = diffusion_settle, .feed = diffusion_feed,
+    .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .sort = begin_frame, .step = step, .push = particles_push, .settle = diffusion_settle, .feed = diffusion_feed,
     .measure = solid_measure, .read = solid_read, .components = components, .save = solid_save, .restore = solid_restore,
     .stages = stage_names, .knows = knows, .surround = surround, .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = phases,
     .phase_names = {"sort", "p2g", "grid", "g2p"}, .effort = effort,

@@ -106,6 +106,8 @@ typedef struct solid_engine {
     status (*sort)(solid *s, report *r);
     /* One step of symplectic Euler. STATUS_DIVERGED when the new state is not finite or runs away; `fault` says where. */
     status (*step)(solid *s, double dt, solid_fault *fault, report *r);
+    /* Adds to the particles' velocities and affine velocities: change[count][3 + 9], in order of id; between steps. NULL: it has none of the latter. */
+    void (*push)(solid *s, const double *change);
     /* Diffusion runs every n-th step: this brings it to `time`, as a frame must have it. NULL where nothing diffuses ever. Errors: out of memory. */
     status (*settle)(solid *s, double time, report *r);
     void (*feed)(solid *s, const source_feed *feeds); /* [source_count], between steps; NULL likewise */

@@ -19,9 +19,9 @@ class Box(harness.Box):
         check(code == 0, f"sunder {' '.join(arguments[:2])}: exit {code}: {err[-300:]}")
         return out
 
-    def run(self, label, *arguments):
+    def run(self, label, *arguments, scene=SCENE):
         out = self.path(label)
-        text = self.sunder("run", SCENE, "--precision", "f64", "--json", "--quiet", "--out", out, "--set", "particles=2000", *arguments)
+        text = self.sunder("run", scene, "--precision", "f64", "--json", "--quiet", "--out", out, "--set", "particles=2000", *arguments)
         return out, json.loads(text or "{}")
 
 
@@ -67,6 +67,21 @@ def test_the_film_tears_and_the_bar_holds():
         box.sunder("render", "last", "--out", picture, "--colour", "sheet/broken")
         listed = box.sunder("runs", "list")
         check("Bar and film" in listed, "the ledger lists the run")
+
+
+def test_a_film_catches_a_ball_or_tears():
+    scene = os.path.join(SOURCE, "scenes/both/ball_on_film.lua")
+    with Box() as box:
+        check("pass through" not in box.sunder("check", scene), "no note where they touch")
+        reader, height, broken = FrameReader(SUNDER), {}, {}
+        for film in ("strong", "weak", "none"):
+            out, _ = box.run(film, "--set", f"film={film}", "--set", "spacing=0.04", "--set", "duration=1", scene=scene)
+            z = reader.read(out, 24, "/solid/position")[2::3]
+            height[film], broken[film] = sum(z) / len(z), sum(reader.read(out, 24, "/sheet/bond_broken"))
+        print("  the ball is at", height, "bonds broken", broken)
+        check(height["strong"] > -0.3 and broken["strong"] == 0, "a strong film catches the ball")
+        check(height["weak"] < -0.6 and broken["weak"] > 10, "a weak one tears and lets it through")
+        check(abs(height["none"] - (0.3 - 0.5 * 4)) < 0.02 and broken["none"] == 0, "without contact it falls freely")
 
 
 def test_the_commands_say_that_there_are_both():

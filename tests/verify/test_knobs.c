@@ -216,6 +216,9 @@ static scene *both_kinds(void) {
     s->bodies[0].material = 1;
     s->body_count = 1;
     s->particles = 300;
+    effect_values *contact = &s->effects[effect_index("contact")];
+    contact->on = contact->given[0] = true;
+    contact->value[0][0] = 0.2;
     scene_destroy(from);
     return s;
 }

@@ -16,7 +16,8 @@
     X(gravity)                                                                                                         \
     X(mass_damping)                                                                                                    \
     X(boundary) /* grips and colliders on the grid's velocities */                                                     \
-    X(inextensible) /* the last word on them */
+    X(inextensible) /* the last word on them */                                                                        \
+    X(contact) /* no stage: the simulation does it */
 
 #define SOLID_EFFECT_INDEX(name) EFFECT_##name,
 enum { SOLID_EFFECT_LIST(SOLID_EFFECT_INDEX) SOLID_EFFECTS };

@@ -366,7 +366,7 @@ status simulation_advance(simulation *s, const atomic_int *abandon, report *r) {
     } while (--steps_left > 0);
     s->frame++;
     s->time = end; /* frames sit at exact multiples, not at sums of steps */
-    status code = engine_end_frame(s, r);
+    code = engine_end_frame(s, r);
     return code == STATUS_OK ? check_domain(s, r) : code;
 }
 

@@ -126,6 +126,7 @@ typedef struct fibre_constraint {
     struct sparse_solver *preconditioner; /* NULL: Jacobi's */
     bool refused;  /* no library is worth its work for now */
     int eager;     /* solves to come that make a preconditioner at once */
+    int fresh, stale, price, uses; /* of a library's: iterations of its first solve, those beyond them since, its cost in iterations, solves since its first */
     bool mapped;   /* `number` belongs to the slots as they are */
     double *vector;        // [2][vector_size], what the preconditioner reads and writes
     int32_t (*unknown)[3]; // [vector_size], cells in grid coordinates

@@ -33,7 +33,7 @@ return s.scene {
     name     = "stick",
     shape    = s.box { min = { -half, -thick, -thick }, max = { half, thick, thick } },
     material = s.recipe "bread",
-    notches  = { s.box { min = { -0.22, thick - 0.05, -1 }, max = { -0.18, 1, 1 } } },
+    notches  = { s.box { min = { -0.22, thick - 0.07, -1 }, max = { -0.18, 1, 1 } } },
     sources  = p.water > 0 and { { shape = s.sphere { center = { 0.2, thick, 0 }, radius = 0.16 }, value = p.water } } or {},
   } },
   grips = { grip(-1), grip(1) },

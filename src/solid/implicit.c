@@ -390,23 +390,6 @@ void implicit_load_window(const solid *s, const solid_block *b, real *window) {
     exchange_plane(s, b, window + WINDOW_NODES, COMPLIANCE, false);
 }
 
-/* Σ w_ip x_i of one particle. */
-SIMD_INLINE real mean_at(const real *r, int nodes, const real *x) {
-    vec4 total = {0}, weight;
-    for (int i = 0; i < nodes; i++) {
-        vec4 sum = {0};
-        for (int j = 0; j < nodes; j++) {
-            vec4 row;
-            vec4_load(&row, x + i * STRIDE_X + j * STRIDE_Y);
-            vec4_add_scaled(&sum, &row, r[G2P_WY + j]);
-        }
-        vec4_add_scaled(&total, &sum, r[G2P_WX + i]);
-    }
-    vec4_load(&weight, r + G2P_WZ);
-    total *= weight;
-    return (total[0] + total[2]) + (total[1] + total[3]);
-}
-
 SIMD_INLINE void gather_spread(const tile_work *w, kernel_kind kind, bool weighed, const real *window) {
     int nodes = kind == KERNEL_QUADRATIC ? 3 : 4;
     if (!weighed) kernel_records(w->state, w->tile, w->scratch->records, kind);

@@ -96,6 +96,23 @@ SIMD_INLINE int scatter_plain_run(const real *records, int p, int count, int nod
     return p;
 }
 
+/* Σ w_ip x_i of one particle whose record kernel_records made. */
+SIMD_INLINE real mean_at(const real *r, int nodes, const real *x) {
+    vec4 total = {0}, weight;
+    for (int i = 0; i < nodes; i++) {
+        vec4 sum = {0};
+        for (int j = 0; j < nodes; j++) {
+            vec4 row;
+            vec4_load(&row, x + i * STRIDE_X + j * STRIDE_Y);
+            vec4_add_scaled(&sum, &row, r[G2P_WY + j]);
+        }
+        vec4_add_scaled(&total, &sum, r[G2P_WX + i]);
+    }
+    vec4_load(&weight, r + G2P_WZ);
+    total *= weight;
+    return (total[0] + total[2]) + (total[1] + total[3]);
+}
+
 /* One particle: Σ w v_i and Σ w v_i (x_i − x_p)ᵀ by separable sums, y first, then x, then z. Results in the record: velocity, then the three
  * columns. */
 SIMD_INLINE void gather_particle(real *r, int nodes, const node_row node_offset, const real *window) {

@@ -201,11 +201,15 @@ static void exchange_tile(const tile_work *w, const real *levels, double interva
         }
 }
 
-/* A plane of a block's nodes at the tile's particles, in scratch->laplacian. */
-static void gather_plane(const tile_work *w, const solid_block *b, real *window, int plane) {
+/* Σ w of a plane of the block's nodes at the tile's particles, whose records hold their weights: out[TILE_PARTICLES]. */
+static void gather_plane(const tile_work *w, const solid_block *b, real *window, int plane, real *out) {
     const solid *s = w->state;
+    int nodes = s->definition.laplacian == KERNEL_QUADRATIC ? 3 : 4;
     exchange_window(b, window, s->diffusion.grid + plane * BLOCK_NODES, 1, NODE * BLOCK_NODES, is_wide(s), false);
-    implicit_gather(w, false, window);
+    for (int p = 0; p < w->tile->pack_count * PACK; p++) {
+        const real *r = w->scratch->records + p * RECORD;
+        out[p] = p < w->tile->count ? mean_at(r, nodes, window + (int)r[G2P_NODE]) : 0;
+    }
 }
 
 static void return_block(void *context, int64_t index, int worker) {
@@ -219,9 +223,9 @@ static void return_block(void *context, int64_t index, int worker) {
         tile_work w = {.state = s, .tile = &s->tiles[t], .scratch = &own->tile};
         if (!takes_part(s, w.tile)) continue;
         if (c->to > c->from) {
-            gather_plane(&w, b, window, LEVEL);
-            memcpy(levels, own->tile.laplacian, sizeof levels);
-            gather_plane(&w, b, window, OPEN);
+            kernel_records(s, w.tile, own->tile.records, s->definition.laplacian);
+            gather_plane(&w, b, window, LEVEL, levels);
+            gather_plane(&w, b, window, OPEN, own->tile.laplacian);
             exchange_tile(&w, levels, c->to - c->from);
         }
         feed_tile(s, w.tile, c->from, c->to);

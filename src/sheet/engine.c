@@ -272,33 +272,9 @@ static void surround(sheet *s, const double gravity[3], double cfl) {
     s->definition.cfl = cfl;
 }
 
-/* Of what a material asks for, that which the numbers of bonds are made from. */
-static sheet_plan bond_part(const sheet_plan *all) {
-    sheet_plan p = *all;
-    p.alpha = p.stiffness_loss = p.toughness_loss = p.stretch_loss = p.floor = p.decay = p.initial = 0;
-    p.damping = p.drag = p.contact_distance = p.contact_stiffness = 0;
-    p.wind[0] = p.wind[1] = p.wind[2] = 0;
-    p.total = p.toughness_softens = false;
-    return p;
-}
-
-/* Sources, gravity and cfl have been taken over already, and bonds are found and calibrated only when they have changed: of a large sheet that takes
- * longer than many steps. Regions of smaller steps are made from the network, so that with them it is always built. */
 static status refresh(sheet *s, report *r) {
-    sheet_plan before[SHEET_MATERIALS];
-    bool same = s->rates == NULL, same_bonds = s->rates == NULL;
-    memcpy(before, s->plans, sizeof before);
-    make_plans(s);
-    for (int m = 0; m < s->definition.material_count; m++) {
-        sheet_plan was = bond_part(&before[m]), is = bond_part(&s->plans[m]);
-        same = same && memcmp(&before[m], &s->plans[m], sizeof is) == 0;
-        same_bonds = same_bonds && memcmp(&was, &is, sizeof is) == 0;
-    }
-    if (same) return STATUS_OK;
     release_effects(s); /* lists that were made for other values */
-    if (!same_bonds) return build(s, false, r);
-    make_constants(s);
-    return STATUS_OK;
+    return build(s, false, r);
 }
 
 static int components(const sheet *s, const char *field) {

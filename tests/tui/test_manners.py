@@ -56,9 +56,10 @@ def too_small_still_quits_from_every_screen():
             with Bench(SMALL_RUN + "00") as s:
                 s.wait(r"frame +[1-9]")
                 s.keys(f"F{i + 2}")
+                s.resize(39, 10)
+                s.wait(r"too small") # nothing can be read from 1×1: what is too small already gets there
                 s.resize(*size)
-                if size != (1, 1):
-                    s.wait(r"too small")
+                s.wait(r"too small" if size != (1, 1) else r"")
                 s.keys("q", "y")
                 s.resize(80, 24)
                 s.wait(r"^END")

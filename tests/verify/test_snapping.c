@@ -77,8 +77,8 @@ static void an_even_stretch_breaks_them_in_its_time(void) {
         error[i] = fabs(b.damage - exact);
         printf("  step %g: %.6f (%.6f to %.6f), exact %.6f\n", i ? 1e-3 : 2e-3, b.damage, b.least, b.most, exact);
     }
-    CHECK_ROW("METHOD §1", "fibres stretched at a constant rate: mean d_f against its closed form, step 1e-3", exact, b.damage, 0.015 * exact);
-    CHECK_ROW("METHOD §1", "the same: its error over that of twice the step", 0.5, error[1] / error[0], 0.15);
+    CHECK_ROW("METHOD 1", "fibres stretched at a constant rate: mean d_f against its closed form, step 1e-3", exact, b.damage, 0.015 * exact);
+    CHECK_ROW("METHOD 1", "the same: its error over that of twice the step", 0.5, error[1] / error[0], 0.15);
     b = free_block(end, 1e-3, TIME, false, 32);
     CHECK(fabs(b.damage - exact) < 0.02 * exact);
     b = free_block(end, 1e-3, TIME, true, 64);
@@ -132,7 +132,7 @@ static void a_bundle_parts_at_its_stretch(void) {
     double held, energy[3];
     bundle_state b = bundle(0.03, &held, energy);
     printf("  whole up to a strain of %.5f; fibres store %.4g at most, then %.4g; the grips' work %.4g\n", held, energy[0], energy[1], energy[2]);
-    CHECK_ROW("METHOD §1", "bundle of fibres pulled until it parts: largest strain of a whole fibre, snap_strain 0.03", 0.03, held, 1e-3);
+    CHECK_ROW("METHOD 1", "bundle of fibres pulled until it parts: largest strain of a whole fibre, snap_strain 0.03", 0.03, held, 1e-3);
     CHECK(b.anywhere > 0.999 && energy[1] < 0.05 * energy[0] && energy[2] < 2 * energy[0]);
     b = bundle(1, &held, energy);
     CHECK(b.anywhere == 0 && b.strain > 0.045 && held > 0.05 && fabs(energy[2] / energy[0] - 1) < 0.1 && energy[1] == energy[0]);

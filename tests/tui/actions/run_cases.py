@@ -36,19 +36,21 @@ def panels(s):
     s.wait(r"did\s+you\s+mean\s+'?knobs")
     s.do("run.panel knobs")
     s.keys("z")
-    s.wait(r"^  sigma_c +\S+ = +break_stretch +0\.2$")
+    s.wait(r"^ [ ▸]sigma_c +\S+ = +break_stretch +0\.2$")
     s.keys("z")
-    s.wait(r"│  sigma_c \S+ = break_stretch 0\.2$")
+    s.wait(r"│ [ ▸]sigma_c \S+ = break_stre\w* 0\.2$")
 
 
 @covers("run.knob-up", "run.knob-down", "run.knob-page-up", "run.knob-page-down", "run.knob", "run.knob-other")
 def cursor(s):
     s.paused().keys("Down")  # the first press shows the knobs
+    s.shows(r"▸sigma_c", r"follows")  # the first that is live
+    s.keys("Up")
     s.shows(r"▸density", r"particles got their masses from it")
     s.keys("Down")
-    s.shows(r"▸sigma_c", r"follows from its twin")
+    s.wait(r"▸sigma_c")
     s.keys("o")
-    s.shows(r"=▸break_stretch", r"live: acts at the next frame")
+    s.shows(r"=▸break_stre", r"live: acts at the next frame")
     s.keys("Up")
     s.wait(r"▸density")
     s.keys("NPage")

@@ -114,8 +114,9 @@ static void take_state(tui_app *app) {
     } else {
         /* Asked before polling: a session that has ended has published its last state. */
         bool ended = session_wait(app->run, 0);
-        if (session_poll(app->run, app->shot)) {
-            log_attach(app);
+        bool news = session_poll(app->run, app->shot);
+        log_attach(app); /* a run may have ended before its first poll here: no news, but a folder */
+        if (news) {
             tell_screens(app);
             app->dirty = true;
         }

@@ -17,14 +17,14 @@ enum { TURN_LIMIT = 256 };
 typedef struct run_options {
     cli_scene_options scene;
     session_options session;
-    bool tui, json, quiet, keep_given;
+    bool tui, paused, json, quiet, keep_given;
     char command[1024], branch[512];
     int turn_count;
     knob_turn turns[TURN_LIMIT];
 } run_options;
 
 enum { OPTION_SET = 256, OPTION_RECIPE, OPTION_FRAMES, OPTION_THREADS, OPTION_PRECISION, OPTION_OUT, OPTION_DB, OPTION_TUI,
-       OPTION_JSON, OPTION_QUIET, OPTION_RESUME, OPTION_SIMD, OPTION_CHECKPOINT_EVERY, OPTION_KEEP, OPTION_TURN, OPTION_BRANCH };
+       OPTION_JSON, OPTION_QUIET, OPTION_RESUME, OPTION_SIMD, OPTION_CHECKPOINT_EVERY, OPTION_KEEP, OPTION_TURN, OPTION_BRANCH, OPTION_PAUSED };
 
 static const struct option long_options[] = {
     {"set", required_argument, NULL, OPTION_SET},
@@ -35,6 +35,7 @@ static const struct option long_options[] = {
     {"out", required_argument, NULL, OPTION_OUT},
     {"db", required_argument, NULL, OPTION_DB},
     {"tui", no_argument, NULL, OPTION_TUI},
+    {"paused", no_argument, NULL, OPTION_PAUSED},
     {"json", no_argument, NULL, OPTION_JSON},
     {"quiet", no_argument, NULL, OPTION_QUIET},
     {"resume", required_argument, NULL, OPTION_RESUME},
@@ -127,6 +128,7 @@ static int parse_option(run_options *o, int option) {
     case OPTION_OUT: o->session.output = optarg; break;
     case OPTION_DB: o->session.database = optarg; break;
     case OPTION_TUI: o->tui = true; break;
+    case OPTION_PAUSED: o->paused = true; break;
     case OPTION_JSON: o->json = true; break;
     case OPTION_QUIET: o->quiet = true; break;
     case OPTION_RESUME: o->session.resume = optarg; break;
@@ -165,6 +167,7 @@ static int parse(run_options *o, int count, char **arguments) {
     if (optind < count) o->scene.scene = arguments[optind++];
     if (optind < count) return cli_usage("run", "one scene at a time, found '%s' too", arguments[optind]);
     if (!o->scene.scene && !o->session.resume && !o->session.branch_of) return cli_usage("run", "expected a scene");
+    if (o->paused && !o->tui) return cli_usage("run", "--paused waits for a key of the workbench: expected --tui with it");
     o->session.scene_path = o->scene.scene ? o->scene.scene : "";
     o->session.command = o->command;
     o->session.turns = o->turns;
@@ -249,6 +252,7 @@ int command_run(int count, char **arguments) {
     bool screen = o.tui && tui_possible(&why);
     /* What can be gone back to is a screen's timeline. */
     if (screen && !o.keep_given) o.session.keep_bytes = workbench_ring;
+    o.session.start_paused = screen && o.paused; /* without a screen nobody could let it go on */
     if (o.tui && !screen) fprintf(stderr, "sunder: the live view is off: %s\n", why);
     static script_reports reports;
     session *s = NULL;

@@ -11,8 +11,10 @@
 #include <string.h>
 
 static const command commands[] = {
-    {"run", "run SCENE [options]   run --resume RUN   run --branch RUN@FRAME   (with --turn FRAME:PATH=VALUE as often as wanted)",
-     "simulate a scene: frames, ledger row, live screen with --tui", command_run},
+    {"run", "run SCENE [--set KEY=VALUE]… [--recipe NAME] | run --resume RUN | run --branch RUN@FRAME   [--turn FRAME:PATH=VALUE]… [--frames N]\n"
+            "         [--threads N] [--precision f32|f64] [--simd NAME] [--out DIR] [--db FILE] [--checkpoint-every N] [--keep N|SIZE|all]\n"
+            "         [--tui [--paused]] [--json] [--quiet]",
+     "simulate a scene: frames, ledger row, live screen with --tui (--paused: not yet begun)", command_run},
     {"check", "check SCENE [--set KEY=VALUE]… [--recipe NAME] [--json]", "validate a scene without running it", command_check},
     {"explain", "explain SCENE [--set KEY=VALUE]… [--json]", "show the plan: effects, fields, bytes, step limits, cost", command_explain},
     {"sweep", "sweep SCRIPT.lua [-j N] [--list] [--set KEY=VALUE]… [--frames N] [--threads N] [--db FILE] [--json] [--quiet] [--lines]",
@@ -117,6 +119,14 @@ static int unknown_command(const char *name) {
     return cli_fail(&r);
 }
 
+/* `sunder COMMAND … --help`, or -h where it is the first word. */
+static bool asks_for_help(int count, char **arguments) {
+    if (count > 0 && strcmp(arguments[0], "-h") == 0) return true;
+    for (int i = 0; i < count && strcmp(arguments[i], "--") != 0; i++)
+        if (strcmp(arguments[i], "--help") == 0) return true;
+    return false;
+}
+
 int main(int count, char **arguments) {
     setlocale(LC_ALL, "");
     setlocale(LC_NUMERIC, "C"); /* numbers in files and JSON have a point, wherever we are */
@@ -126,5 +136,7 @@ int main(int count, char **arguments) {
     if (strcmp(name, "--version") == 0) return puts("sunder " SUNDER_VERSION) < 0;
     if (strncmp(name, "--", 2) == 0) return command_workbench(count, arguments);
     const command *c = find_command(name);
-    return c ? c->handler(count - 1, arguments + 1) : unknown_command(name);
+    if (!c) return unknown_command(name);
+    if (asks_for_help(count - 2, arguments + 2)) return printf("usage: sunder %s\n\n%s\n", c->usage, c->help) < 0;
+    return c->handler(count - 1, arguments + 1);
 }

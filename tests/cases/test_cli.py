@@ -143,6 +143,26 @@ def test_check_says_what_is_wrong():
         check("eta" in box.call("run", PULL, "--set", "etta=1")[2], "--set names the nearest knob")
 
 
+def test_commands_say_how_they_are_called():
+    with Box() as box:
+        commands = re.findall(r"^ {2}sunder (\w+) ", box.call("help")[1], re.M)
+        check(len(commands) > 10, f"commands of sunder help: {commands}")
+        for command in commands:
+            for words in ([command, "-h"], [command, "anything", "--help"]):
+                code, out, err = box.call(*words)
+                check(code == 0 and f"usage: sunder {command}" in out and not err, f"{words}: exit code {code}: {out[:80]}{err[:80]}")
+        code, out, _ = box.call("runs", "list", "--where", "status='--help'")
+        check(code == 0 and "usage" not in out, "a word that holds --help is none")
+
+
+def test_paused_is_the_workbenches():
+    with Box() as box:
+        code, _, err = box.call("run", PULL, *SMALL, "--frames", "1", "--paused")
+        check(code == 2 and "--tui" in err, f"exit code {code}: {err[:120]}")
+        code, result, err = box.run(PULL, *SMALL, "--frames", "1", "--paused", "--tui")
+        check(code == 0 and result["frames"] == 1, f"without a terminal it goes on: exit code {code}: {err[:200]}")
+
+
 def test_runs_diff_shows_what_differs():
     with Box() as box:
         a = box.run(PULL, *SMALL, "--frames", "2")[1]["run_id"]

@@ -53,7 +53,7 @@ def every_screen_fits_its_terminal():
 def too_small_still_quits_from_every_screen():
     for i, _ in enumerate(screens()):
         for size in ((39, 10), (80, 9), (1, 1)):
-            with Bench(SMALL_RUN + "00") as s:
+            with Bench(SMALL_RUN + "000") as s:
                 s.wait(r"frame +[1-9]")
                 s.keys(f"F{i + 2}")
                 s.resize(39, 10)

@@ -60,7 +60,8 @@ def replays_to_the_same_bits(s, log):
 
 def tuned_session(start, at_once, paused, running, branched, material):
     """A whole tuning session: knobs turned while paused and while frames go on, a rewind with [ and a branch from there, turns of the branch, its
-    material saved as a recipe, and the branch run to its end. Each of the lists is (path, value)."""
+    material saved as a recipe, and the branch stopped some frames later. Each of the lists is (path, value). The scene has many more frames than
+    go by while knobs are turned."""
     with Bench(start) as s:
         first = s.paused().frame()
         for path, value in at_once:
@@ -85,8 +86,9 @@ def tuned_session(start, at_once, paused, running, branched, material):
             turn(s, path, value)
         s.do("run.save-recipe tuned.lua")
         s.wait(r"is in tuned\.lua")
-        s.keys("Space")
-        s.wait(r"done *$", patience=60)
+        run_to(s, first + 20)
+        s.keys("S")
+        s.wait(r"stopped *$")
         s.keys("q")
         s.wait(r"^END")
         turned = [row[0].split(".")[-1] for row in s.sql("SELECT DISTINCT path FROM knob_turns")]
@@ -107,26 +109,26 @@ def tuned_session(start, at_once, paused, running, branched, material):
 
 @test
 def a_solid_is_tuned():
-    tuned_session("solid/tube_pull.lua --set particles=1500 --set duration=4", at_once=[("eta", "0.3")],
+    tuned_session("solid/tube_pull.lua --set particles=1500 --set duration=100 --paused", at_once=[("eta", "0.3")],
                   paused=[("break_stretch", "0.2"), ("alpha", "-0.5"), ("gamma", "6")], running=[("residual", "0.05")],
                   branched=[("sigma_c", "40"), ("eta", "0.2")], material="sigma_c")
 
 
 @test
 def a_sheet_with_a_source_is_tuned():
-    tuned_session("sheet/paper_towel.lua --set particles=900 --set variant=wet --frames 250", at_once=[("sources.1.strength", "0.5")],
+    tuned_session("sheet/paper_towel.lua --set particles=900 --set variant=wet --frames 5000 --paused", at_once=[("sources.1.strength", "0.5")],
                   paused=[("fracture.G", "1.5"), ("swelling.alpha", "0.1"), ("diffusion.k", "0.8")], running=[("sources.1.strength", "2")],
                   branched=[("sources.1.strength", "0"), ("softening.stiffness", "1")], material="diffusion")
 
 
 @test
 def a_diffusion_source_is_turned():
-    with Bench("sheet/paper_towel.lua --set particles=900 --set variant=wet --frames 60") as s:
+    with Bench("sheet/paper_towel.lua --set particles=900 --set variant=wet --frames 60 --paused") as s:
         s.paused()
         turn(s, "sources.1.strength", "0.5")
-        s.keys("Space")
-        s.wait(r"frame +(1\d|[2-9]\d?)/")
+        run_to(s, 10)
         turn(s, "strength", "3")
+        s.keys("Space")
         s.wait(r"done *$", patience=60)
         s.keys("q")
         s.wait(r"^END")
@@ -172,8 +174,8 @@ def what_is_said_about_runs_is_said_of_the_same_ones():
 
 @test
 def a_stop_is_replayed_at_its_frame():
-    with Bench("solid/tube_pull.lua --set particles=1500 --set duration=4 --precision f64") as s:
-        s.wait(r"frame +[3-9]/")
+    with Bench("solid/tube_pull.lua --set particles=1500 --set duration=100 --precision f64") as s:
+        s.wait(r"frame +([3-9]|\d\d+)/")
         s.do("run.turn eta=0.2")
         s.wait(r"eta = 0.2")
         s.keys("C-c")
@@ -234,7 +236,7 @@ def wrong_logs_are_refused_with_their_line():
 @test
 def config_binds_keys_and_wrong_ones_are_told():
     config = 'return {\n  theme = "light",\n  keys = { ["ctrl-n"] = "run.turn eta=0.125", F9 = "screen console", g = false },\n  styles = { good = 200 },\n}\n'
-    with Bench("solid/tube_pull.lua --set particles=900", config=config) as s:
+    with Bench("solid/tube_pull.lua --set particles=900 --paused", config=config) as s:
         s.paused()
         check("48;5;254" in s.text(True), "not the light theme")
         s.keys("C-n")
@@ -249,7 +251,7 @@ def config_binds_keys_and_wrong_ones_are_told():
     for wrong, message in (('return {\n  keys = {\n    F9 = "run.pausse" },\n}\n', r"(?s)config\.lua:3: .*run\.pause"),
                            ('return {\n  theme = "lightt" }\n', r"(?s)config\.lua:2: theme.*light"), ("return {\n  keys = { }\n", r"(?s)config\.lua:\d"),
                            ('return {\n  keyz = {} }\n', r"(?s)config\.lua:\d.*keys"), ('return {\n\n  styles = { goood = 3 } }\n', r"(?s)config\.lua:3.*good")):
-        with Bench("solid/tube_pull.lua --set particles=900", config=wrong) as s:
+        with Bench("solid/tube_pull.lua --set particles=900 --paused", config=wrong) as s:
             s.wait(message)
             s.paused()
 

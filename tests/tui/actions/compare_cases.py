@@ -3,7 +3,7 @@ import re
 
 from bench import check, covers
 
-SMALL = "solid/tube_pull.lua --set particles=1200 --set duration=2"
+SMALL = "solid/tube_pull.lua --set particles=1200 --set duration=2 --paused"
 
 
 def branched(s):

@@ -21,6 +21,7 @@
 struct sparse_solver {
     sparse_kind kind;
     int32_t size;
+    double making, applying; /* sparse_price */
 #ifdef SUNDER_HAS_CHOLMOD
     cholmod_common common;
     cholmod_factor *factor;
@@ -71,6 +72,10 @@ void sparse_free(sparse_matrix *m) {
 /* ---- CHOLMOD ----------------------------------------------------------------------------------------------------- */
 
 #ifdef SUNDER_HAS_CHOLMOD
+/* For sparse_price, nanoseconds: a multiplication of a simplicial factorisation or of a solve takes one; ordering and copies take these an entry of the
+ * matrix. */
+static const double ANALYSING = 10;
+
 /* CHOLMOD's view of a matrix that it does not own. */
 static cholmod_sparse view_of(const sparse_matrix *m) {
     return (cholmod_sparse){.nrow = (size_t)m->size, .ncol = (size_t)m->size, .nzmax = (size_t)m->start[m->size], .p = m->start, .i = m->row,
@@ -88,6 +93,8 @@ static status direct_create(sparse_solver *s, const sparse_matrix *m, double wor
     if (*too_much) return STATUS_OK;
     if (!s->factor || !cholmod_factorize(&a, s->factor, &s->common) || s->common.status != CHOLMOD_OK)
         return report_set(r, STATUS_DIVERGED, "the factorisation of %d unknowns failed (CHOLMOD status %d)", m->size, s->common.status);
+    s->making = s->common.fl + ANALYSING * (double)m->start[m->size];
+    s->applying = 2 * s->common.lnz;
     s->right = cholmod_allocate_dense((size_t)m->size, 1, (size_t)m->size, CHOLMOD_REAL, &s->common);
     return s->right ? STATUS_OK : report_set(r, STATUS_SYSTEM, "out of memory for a factorisation of %d unknowns", m->size);
 }
@@ -114,6 +121,9 @@ static status direct_apply(sparse_solver *s, const double *right, double *z, rep
 /* ---- hypre ------------------------------------------------------------------------------------------------------- */
 
 #ifdef SUNDER_HAS_HYPRE
+/* For sparse_price: of set-up and cycle, an entry of the matrix. */
+static const double SETTING_UP = 500, CYCLING = 40;
+
 static void leave_mpi(void) {
     int over = 0;
     MPI_Finalized(&over);
@@ -170,6 +180,8 @@ static status amg_create(sparse_solver *s, const sparse_matrix *m, report *r) {
     bool fine = fill_matrix(s, m);
     make_vector(m->size, &s->b, &s->parcsr_b);
     make_vector(m->size, &s->x, &s->parcsr_x);
+    s->making = SETTING_UP * (double)m->start[m->size];
+    s->applying = CYCLING * (double)m->start[m->size];
     HYPRE_BoomerAMGCreate(&s->amg);
     HYPRE_BoomerAMGSetPrintLevel(s->amg, 0);
     HYPRE_BoomerAMGSetMaxIter(s->amg, 1);
@@ -239,6 +251,11 @@ void sparse_destroy(sparse_solver *s) {
     memory_free(s, sizeof *s);
 }
 
+void sparse_price(const sparse_solver *s, double *making, double *applying) {
+    *making = s->making;
+    *applying = s->applying;
+}
+
 status sparse_apply(sparse_solver *s, const double *right, double *z, report *r) {
 #ifdef SUNDER_HAS_CHOLMOD
     if (s->kind == SPARSE_DIRECT) return direct_apply(s, right, z, r);
@@ -246,6 +263,6 @@ status sparse_apply(sparse_solver *s, const double *right, double *z, report *r)
 #ifdef SUNDER_HAS_HYPRE
     if (s->kind == SPARSE_AMG) return amg_apply(s, right, z, r);
 #endif
-    (void)right, (void)z;
+    (void)s, (void)right, (void)z;
     return report_set(r, STATUS_SYSTEM, "this build has no library for the solve");
 }

@@ -37,6 +37,9 @@ void sparse_free(sparse_matrix *m);
 status sparse_create(sparse_kind kind, const sparse_matrix *m, double work_limit, sparse_solver **out, report *r);
 void sparse_destroy(sparse_solver *s);
 
+/* Nanoseconds, roughly, that making it from its matrix took and that an application takes, from counts alone: for decisions that must repeat. */
+void sparse_price(const sparse_solver *s, double *making, double *applying);
+
 /* z ← P⁻¹ r, both [size]. Errors: the library's. */
 status sparse_apply(sparse_solver *s, const double *right, double *z, report *r);
 

@@ -5,6 +5,8 @@
 #include "solid/inextensible_lanes.h"
 #include "solid/order.h"
 
+enum { WIDEST = 6, AROUND = BLOCK + 2 * (WIDEST - 1) };
+
 typedef struct assembly {
     const solid *state;
     const int32_t *number; // [slots][BLOCK_NODES], −1: no unknown
@@ -12,6 +14,7 @@ typedef struct assembly {
     int low, width; /* a cell's nodes start at `low` from it */
     double *rows;   // [cells][width³][3]
     int32_t (*near)[125]; // [slots] slots of the blocks around, −2 … 2; −1: none
+    int32_t around[AROUND * AROUND * AROUND]; /* numbers of a slot's cells and of those that share a node with them */
 } assembly;
 
 static size_t row_size(const assembly *a) {
@@ -108,55 +111,88 @@ static void respond(const assembly *a, int32_t slot, const int cell[3], const do
     }
 }
 
-/* Σ over the nodes that two cells share. */
-static double product(const assembly *a, const double *response, const double *row, const int offset[3]) {
-    int width = a->width, from[3], to[3];
-    for (int axis = 0; axis < 3; axis++) {
+/* Σ over the nodes that two cells share, `line` of them in a row along z. */
+SIMD_INLINE double product_of(int width, int line, const double *response, const double *row, const int offset[3]) {
+    int from[2], to[2], up = offset[2] > 0 ? offset[2] : 0;
+    for (int axis = 0; axis < 2; axis++) {
         from[axis] = offset[axis] > 0 ? offset[axis] : 0;
         to[axis] = offset[axis] < 0 ? width + offset[axis] : width;
     }
-    double sum = 0;
+    double sums[3 * WIDEST] = {0}, sum = 0;
     for (int i = from[0]; i < to[0]; i++)
         for (int j = from[1]; j < to[1]; j++) {
-            const double *x = response + ((i * width + j) * width) * 3;
-            const double *y = row + (((i - offset[0]) * width + j - offset[1]) * width - offset[2]) * 3;
-            for (int k = 3 * from[2]; k < 3 * to[2]; k++) sum += x[k] * y[k];
+            const double *x = response + ((i * width + j) * width + up) * 3;
+            const double *y = row + (((i - offset[0]) * width + j - offset[1]) * width + up - offset[2]) * 3;
+            for (int k = 0; k < 3 * line; k++) sums[k] += x[k] * y[k];
         }
+    for (int k = 0; k < 3 * line; k++) sum += sums[k];
     return sum;
 }
 
-static void add_column(const assembly *a, int32_t slot, int n, const double *response, sparse_matrix *m, int64_t *used) {
-    int reach = a->width - 1, cell[3] = {n / 16, n / 4 % 4, n % 4};
-    int32_t own = a->number[(int64_t)slot * BLOCK_NODES + n];
-    m->start[own] = (int32_t)*used;
-    for (int i = -reach; i <= reach; i++)
-        for (int j = -reach; j <= reach; j++)
-            for (int k = -reach; k <= reach; k++) {
-                int offset[3] = {i, j, k}, at[3] = {cell[0] + i, cell[1] + j, cell[2] + k};
-                int64_t index = index_at(a, slot, at);
-                int32_t other = index < 0 ? -1 : a->number[index];
-                if (other < own) continue;
-                m->row[*used] = other;
-                m->value[(*used)++] = product(a, response, a->rows + (size_t)other * row_size(a), offset);
-            }
+/* Widths and lines as constants: the innermost loop is a few instructions. */
+static double product(int width, const double *response, const double *row, const int offset[3]) {
+    int line = width - (offset[2] < 0 ? -offset[2] : offset[2]);
+    if (width == 4) switch (line) {
+        case 4: return product_of(4, 4, response, row, offset);
+        case 3: return product_of(4, 3, response, row, offset);
+        case 2: return product_of(4, 2, response, row, offset);
+        default: return product_of(4, 1, response, row, offset);
+        }
+    switch (line) {
+    case 6: return product_of(6, 6, response, row, offset);
+    case 5: return product_of(6, 5, response, row, offset);
+    case 4: return product_of(6, 4, response, row, offset);
+    case 3: return product_of(6, 3, response, row, offset);
+    case 2: return product_of(6, 2, response, row, offset);
+    default: return product_of(6, 1, response, row, offset);
+    }
 }
 
-static status fill(const assembly *a, sparse_matrix *m, report *r) {
+/* Whether the slot has unknowns; then also the numbers around it. */
+static bool number_around(assembly *a, int32_t slot) {
+    bool some = false;
+    for (int n = 0; n < BLOCK_NODES; n++) some |= a->number[(int64_t)slot * BLOCK_NODES + n] >= 0;
+    int reach = a->width - 1, wide = BLOCK + 2 * reach;
+    for (int n = 0; n < wide * wide * wide && some; n++) {
+        int at[3] = {n / (wide * wide) - reach, n / wide % wide - reach, n % wide - reach};
+        int64_t index = index_at(a, slot, at);
+        a->around[n] = index < 0 ? -1 : a->number[index];
+    }
+    return some;
+}
+
+static void add_column(const assembly *a, int32_t own, const int cell[3], const double *response, sparse_matrix *m, int64_t *used) {
+    int reach = a->width - 1, wide = BLOCK + 2 * reach;
+    m->start[own] = (int32_t)*used;
+    for (int i = -reach; i <= reach; i++)
+        for (int j = -reach; j <= reach; j++) {
+            const int32_t *line = a->around + ((cell[0] + i + reach) * wide + cell[1] + j + reach) * wide + cell[2] + reach;
+            for (int k = -reach; k <= reach; k++) {
+                if (line[k] < own) continue;
+                m->row[*used] = line[k];
+                m->value[(*used)++] = product(a->width, response, a->rows + (size_t)line[k] * row_size(a), (const int[]){i, j, k});
+            }
+        }
+}
+
+static status fill(assembly *a, sparse_matrix *m, report *r) {
     const solid *s = a->state;
     double *response = memory_allocate_array(row_size(a), sizeof *response);
     if (!response) return report_set(r, STATUS_SYSTEM, "out of memory for the matrix of inextensible fibres");
     int64_t used = 0;
-    for (int32_t slot = 0; slot < s->slot_count; slot++)
-        for (int n = 0; n < BLOCK_NODES; n++) {
+    for (int32_t slot = 0; slot < s->slot_count; slot++) {
+        bool some = number_around(a, slot);
+        for (int n = 0; some && n < BLOCK_NODES; n++) {
             int32_t own = a->number[(int64_t)slot * BLOCK_NODES + n];
             if (own < 0) continue;
             int cell[3] = {n / 16, n / 4 % 4, n % 4};
             respond(a, slot, cell, a->rows + (size_t)own * row_size(a), response);
             int64_t first = used;
-            add_column(a, slot, n, response, m, &used);
+            add_column(a, own, cell, response, m, &used);
             for (int64_t e = first; e < used; e++)
                 if (m->row[e] == own) m->value[e] += (double)constraint_relaxation(s, slot, n);
         }
+    }
     m->start[m->size] = (int32_t)used;
     memory_free(response, row_size(a) * sizeof *response);
     return STATUS_OK;

@@ -7,9 +7,11 @@
 
 enum {
     PATIENCE = 40, /* iterations with Jacobi's before AUTO looks for better */
-    STALE = 20,    /* iterations with a library's before it is made anew */
-    EAGER = 12,    /* solves that make theirs at once, after one that had to make it anew */
+    EAGER = 12,    /* solves that make theirs at once, after one that was no good for a second solve */
 };
+
+/* Nanoseconds, roughly: an iteration a particle, and assembling a matrix an entry. Only what one is of the other counts. */
+static const double ITERATING = 230, ASSEMBLING = 30;
 
 /* Multiplications that a factorisation may take: some seconds. */
 static const double WORK_LIMIT = 2e10;
@@ -17,11 +19,24 @@ static const double WORK_LIMIT = 2e10;
 /* Cells among held nodes have no row: the diagonal grows by this share of the largest, so that the matrix can be factored. */
 static const double SHIFT = 1e-9;
 
+static int stale_iterations(const fibre_constraint *c, int since) {
+    return c->stale + (since > c->fresh ? since - c->fresh : 0);
+}
+
+/* A library's is made anew when the iterations that it took beyond those of its first solve add up to the price of a new one: never more than twice
+ * what would have been best. */
 bool constraint_is_slow(const solid *s, int since, int built) {
     const fibre_constraint *c = &s->constraint;
-    if (c->refused || c->solver == CONSTRAINT_JACOBI || built > 1) return false;
-    if (c->preconditioner) return since == (built == 0 && c->eager > 0 ? 0 : STALE);
-    return since == (c->solver == CONSTRAINT_AUTO ? PATIENCE : 0);
+    if (c->refused || c->solver == CONSTRAINT_JACOBI || built > 0) return false;
+    if (!c->preconditioner) return since == (c->solver == CONSTRAINT_AUTO ? PATIENCE : 0);
+    return c->eager > 0 || stale_iterations(c, since) >= c->price;
+}
+
+void constraint_solved(solid *s, int since, int built) {
+    fibre_constraint *c = &s->constraint;
+    c->stale = built > 0 ? 0 : stale_iterations(c, since);
+    c->uses = built > 0 ? 0 : c->uses + 1;
+    if (built > 0) c->fresh = since;
 }
 
 void constraint_forget(solid *s) {
@@ -36,7 +51,7 @@ void constraint_forget(solid *s) {
 
 void constraint_begin_frame(solid *s) {
     constraint_forget(s);
-    s->constraint.eager = 0;
+    s->constraint.eager = s->constraint.stale = s->constraint.fresh = s->constraint.uses = 0;
 }
 
 static int32_t count_unknowns(const solid *s) {
@@ -83,6 +98,15 @@ void constraint_map(solid *s) {
     c->mapped = true;
 }
 
+/* What a new preconditioner costs, in iterations. */
+static int price(const solid *s, int64_t entries) {
+    double making, applying, particles = 0;
+    sparse_price(s->constraint.preconditioner, &making, &applying);
+    for (int32_t t = 0; t < s->tile_count; t++)
+        if (s->constraint.material[s->tiles[t].material]) particles += s->tiles[t].count;
+    return 1 + (int)((making + ASSEMBLING * (double)entries) / (applying + ITERATING * particles));
+}
+
 static void shift_diagonal(sparse_matrix *m) {
     double largest = 0;
     for (int pass = 0; pass < 2; pass++)
@@ -96,7 +120,7 @@ static void shift_diagonal(sparse_matrix *m) {
 
 status constraint_precondition(solid *s, real dt, report *r) {
     fibre_constraint *c = &s->constraint;
-    c->eager = c->eager > 0 ? c->eager - 1 : c->preconditioner ? EAGER : 0;
+    c->eager = c->eager > 0 ? c->eager - 1 : c->preconditioner && c->uses == 0 ? EAGER : 0;
     sparse_matrix m = {0};
     status code = number_unknowns(s, r);
     if (code == STATUS_OK) code = constraint_assemble(s, dt, c->number, c->unknowns, &m, r);
@@ -108,6 +132,7 @@ status constraint_precondition(solid *s, real dt, report *r) {
         if (code == STATUS_OK && !c->preconditioner && (c->solver == CONSTRAINT_AMG || (automatic && sparse_available(SPARSE_AMG))))
             code = sparse_create(SPARSE_AMG, &m, 0, &c->preconditioner, r);
     }
+    if (c->preconditioner) c->price = price(s, m.start[m.size]);
     sparse_free(&m);
     if (code != STATUS_OK) return code;
     c->refused = !c->preconditioner;

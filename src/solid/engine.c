@@ -69,6 +69,7 @@ static void plan_fields(solid *s) {
     s->fibre_field = find_index(s, "fibre");
     s->fibre2_field = find_index(s, "fibre2");
     s->tension_field = find_index(s, "fibre_tension");
+    s->fibre_wave_field = find_index(s, "fibre_wave");
     s->snapped_field = find_index(s, "fibre_damage");
     s->swelling_field = find_index(s, "swelling");
     s->diffusion.field = find_index(s, "diffused");

@@ -16,13 +16,9 @@
 #include "base/memory.h"
 #include "base/sparse.h"
 #include "base/threads.h"
-#include "solid/inextensible_lanes.h"
-#include "solid/records.h"
+#include "solid/inextensible_planes.h"
 
 #include <math.h>
-
-/* Planes of cells, [slot][PLANES][BLOCK_NODES]. */
-enum { TENSION, WEIGHT, RELAXATION, STRAIN, RESIDUAL, PRECONDITIONER, SEARCH, IMAGE, PRECONDITIONED, PLANES, STARTED = 4 };
 
 enum { ITERATION_LIMIT = 2000, SET_ROUNDS = 4 };
 
@@ -30,13 +26,10 @@ enum { ITERATION_LIMIT = 2000, SET_ROUNDS = 4 };
  * shorten the step. This share of the diagonal damps them; what it lets through of the others, the correction below takes back. */
 #define REGULARISATION ((real)5e-5)
 
-/* A fibre's stretch is taken back within a fraction of the time that the matrix needs to carry a wave over a cell (`recovery`), so that what tolerance and time
- * steps let through does not add up; at most this share in one step, and beyond the most that is corrected at once it is pulled back gently. (A
- * share of each step alone runs away: tension shortens the step, which raises the tension that a share asks for.) It is the cells'
- * mean that is taken back: what single particles stretch beside it is in nobody's power, and asking for it drives tension
- * without bound. */
-#define CORRECTION ((real)0.25)
-#define CORRECTED_MOST ((real)0.05)
+/* A cell among held nodes has no say: the grip gives it its strain rate, and what is left for its tension to pull at is the rim of its kernel. Where
+ * less than this share of its squared weights lies on what may move, it is no unknown and has no tension; left in, its tension grows with the inverse of
+ * that share. Along fibres that enter a grip the shares are 0, 3.5 % (the outermost of four planes of nodes is free), 50 %, 96.5 % and 1. */
+#define FREE_SHARE ((real)0.1)
 
 /* ---- memory ------------------------------------------------------------------------------------------------------ */
 
@@ -78,270 +71,14 @@ double constraint_bytes(const solid *s) {
     return (double)s->constraint.capacity * BLOCK_NODES * node;
 }
 
-static real *plane(const solid *s, int64_t slot, int which) {
-    return s->constraint.cells + (slot * PLANES + which) * BLOCK_NODES;
-}
-
-static real *vectors(const solid *s, int64_t slot) {
-    return s->constraint.nodes + slot * BLOCK_NODES * NODE;
-}
-
-/* ---- particles --------------------------------------------------------------------------------------------------- */
-
-typedef struct pass_context {
-    solid *state;
-    const int32_t *blocks;
-    real dt;
-} pass_context;
-
-SIMD_INLINE real cells_gather(const fibre_lanes *l, int lane, const real *window) {
-    real weight[8], sum = 0;
-    cell_weights(l, lane, weight);
-    const real *from = window + (int)l->cell[lane];
-    for (int i = 0; i < 8; i++) sum += weight[i] * from[cell_step[i]];
-    return sum;
-}
-
-SIMD_INLINE void cells_scatter(const fibre_lanes *l, int lane, real value, real *window) {
-    real weight[8];
-    cell_weights(l, lane, weight);
-    real *to = window + (int)l->cell[lane];
-    for (int i = 0; i < 8; i++) to[cell_step[i]] += weight[i] * value;
-}
-
-static bool block_is_inextensible(const solid *s, const solid_block *b) {
-    for (int32_t t = b->first_tile; t < b->first_tile + b->tile_count; t++)
-        if (tile_is_inextensible(s, &s->tiles[t])) return true;
-    return false;
-}
-
-/* D⁻¹ times dx: G = this × w × (distance in dx). */
-SIMD_INLINE real gradient_scale(const solid *s, kernel_kind kernel) {
-    return (real)((kernel == KERNEL_QUADRATIC ? 4.0 : 3.0) / s->definition.dx);
-}
-
-/* One plane of a block's cells to or from the grid. */
-static void exchange_plane(const solid *s, const solid_block *b, real *window, int which, bool to_grid) {
-    bool wide = kernels_are_wide(s->definition.kernel, s->definition.laplacian, s->transfers_damage);
-    exchange_window(b, window, s->constraint.cells + which * BLOCK_NODES, 1, PLANES * BLOCK_NODES, wide, to_grid);
-}
-
-static void exchange_vectors(const solid *s, const solid_block *b, real *window, bool to_grid) {
-    bool wide = kernels_are_wide(s->definition.kernel, s->definition.laplacian, s->transfers_damage);
-    exchange_window(b, window, s->constraint.nodes, NODE, BLOCK_NODES * NODE, wide, to_grid);
-}
-
-/* The particles' tensions, weights, relaxations and strain rates asked for to the cells: the start of a solve. */
-SIMD_INLINE void start_block(pass_context *c, int32_t index, int worker, kernel_kind kernel) {
-    solid *s = c->state;
-    const solid_block *b = &s->blocks[index];
-    if (!block_is_inextensible(s, b)) return;
-    real *window = s->workers[worker].implicit_window;
-    memset(window, 0, STARTED * WINDOW_NODES * sizeof *window);
-    FOR_EACH_PART(s, b, {
-        fibre_lanes l = lanes_load(s, kernel, pack, part);
-        vec tension = s->constraint.warm ? vec_load(field_at(&s->fields[s->tension_field], pack, 0, part)) : vec_all(0);
-        vec strain = vec_max(vec_min(l.stretch - 1, vec_all(CORRECTED_MOST)), vec_all(-CORRECTED_MOST));
-        real relaxation = s->constraint.relaxation[t->material] / c->dt, most = CORRECTION / c->dt;
-        real rate = s->constraint.recovery[t->material] < most ? s->constraint.recovery[t->material] : most;
-        for (int lane = 0; lane < LANES_OF(t, first); lane++) {
-            cells_scatter(&l, lane, l.volume[lane] * tension[lane], window + TENSION * WINDOW_NODES);
-            cells_scatter(&l, lane, l.volume[lane], window + WEIGHT * WINDOW_NODES);
-            cells_scatter(&l, lane, l.volume[lane] * relaxation, window + RELAXATION * WINDOW_NODES);
-            cells_scatter(&l, lane, l.volume[lane] * strain[lane] * rate, window + STRAIN * WINDOW_NODES);
-        }
-    })
-    for (int which = 0; which < STARTED; which++) exchange_plane(s, b, window + which * WINDOW_NODES, which, true);
-}
-
-/* Nodes ← Bᵀ SEARCH. */
-SIMD_INLINE void spread_block(pass_context *c, int32_t index, int worker, kernel_kind kernel) {
-    solid *s = c->state;
-    const solid_block *b = &s->blocks[index];
-    if (!block_is_inextensible(s, b)) return;
-    solid_worker *own = &s->workers[worker];
-    real *cells = own->implicit_window, *records = own->tile.records;
-    const real offsets[4] = {0, 1, 2, 3};
-    node_row node_offset = row_spread(offsets);
-    real scale = gradient_scale(s, kernel);
-    int nodes = kernel == KERNEL_QUADRATIC ? 3 : 4;
-    exchange_plane(s, b, cells, SEARCH, false);
-    memset(own->window, 0, sizeof own->window);
-    FOR_EACH_PART(s, b, {
-        fibre_lanes l = lanes_load(s, kernel, pack, part);
-        vec q = vec_all(0);
-        for (int lane = 0; lane < LANES_OF(t, first); lane++) q[lane] = cells_gather(&l, lane, cells);
-        q *= l.volume * scale;
-        const vec a[3] = {l.a.x, l.a.y, l.a.z};
-        const vec u[3] = {l.at.u.x, l.at.u.y, l.at.u.z};
-        vec along = vec_fma(a[0], u[0], vec_fma(a[1], u[1], a[2] * u[2]));
-        vec columns[RECORD] = {vec_all(0)};
-        static const int weight_slot[3] = {P2G_WX, P2G_WY, P2G_WZ};
-        for (int axis = 0; axis < 3; axis++) {
-            kernel_weights(kernel, u[axis], columns + weight_slot[axis]);
-            columns[P2G_BASE + axis] = -(q * a[axis] * along);
-            for (int column = 0; column < 3; column++) columns[P2G_X + 4 * column + axis] = q * a[axis] * a[column];
-        }
-        columns[P2G_NODE] = window_index(l.at.base);
-        records_store(records, first, 0, columns, RECORD);
-        if (k + 1 == t->pack_count && part + 1 == PACK_PARTS)
-            for (int p = 0; p < t->count;) p = scatter_run(records, p, t->count, nodes, node_offset, own->window);
-    })
-    exchange_vectors(s, b, own->window, true);
-}
-
-/* a · (Σ_i w_i v_i (x_i − x_p)ᵀ) a of the lanes of one part, from gathered records. */
-SIMD_INLINE vec stretching(const fibre_lanes *l, const real *records, int first) {
-    const vec a[3] = {l->a.x, l->a.y, l->a.z};
-    vec rate = vec_all(0), out[RECORD - G2P_OUT];
-    records_load(records, first, G2P_OUT, out, RECORD - G2P_OUT);
-    for (int column = 0; column < 3; column++) {
-        vec along = vec_all(0);
-        for (int c = 0; c < 3; c++) along = vec_fma(a[c], out[4 + 4 * column + c], along);
-        rate = vec_fma(along, a[column], rate);
-    }
-    return rate;
-}
-
-SIMD_INLINE void gather_records(real *records, int first, int lanes, const fibre_lanes *l, kernel_kind kernel, const node_row node_offset,
-                                const real *window) {
-    const vec u[3] = {l->at.u.x, l->at.u.y, l->at.u.z};
-    static const int weight_slot[3] = {G2P_WX, G2P_WY, G2P_WZ};
-    vec columns[G2P_OUT];
-    for (int axis = 0; axis < 3; axis++) {
-        kernel_weights(kernel, u[axis], columns + weight_slot[axis]);
-        columns[G2P_OFFSET + axis] = u[axis];
-    }
-    columns[G2P_NODE] = window_index(l->at.base);
-    records_store(records, first, 0, columns, G2P_OUT);
-    for (int lane = 0; lane < lanes; lane++)
-        gather_particle(records + (first + lane) * RECORD, kernel == KERNEL_QUADRATIC ? 3 : 4, node_offset, window);
-    for (int lane = lanes; lane < VEC_LANES; lane++) memset(records + (first + lane) * RECORD + G2P_OUT, 0, 16 * sizeof(real));
-}
-
-/* A plane of cells += B nodes; the right-hand side also asks for what fibres have stretched so far. */
-SIMD_INLINE void collect_block(pass_context *c, int32_t index, int worker, kernel_kind kernel, int into) {
-    solid *s = c->state;
-    const solid_block *b = &s->blocks[index];
-    if (!block_is_inextensible(s, b)) return;
-    solid_worker *own = &s->workers[worker];
-    real *cells = own->implicit_window, scale = gradient_scale(s, kernel);
-    const real offsets[4] = {0, 1, 2, 3};
-    node_row node_offset = row_spread(offsets);
-    exchange_vectors(s, b, own->window, false);
-    memset(cells, 0, WINDOW_NODES * sizeof *cells);
-    if (into == RESIDUAL) exchange_plane(s, b, cells + WINDOW_NODES, STRAIN, false);
-    FOR_EACH_PART(s, b, {
-        fibre_lanes l = lanes_load(s, kernel, pack, part);
-        gather_records(own->tile.records, first, LANES_OF(t, first), &l, kernel, node_offset, own->window);
-        vec value = l.volume * scale * stretching(&l, own->tile.records, first);
-        if (into == RESIDUAL)
-            for (int lane = 0; lane < LANES_OF(t, first); lane++)
-                value[lane] += l.volume[lane] * cells_gather(&l, lane, cells + WINDOW_NODES);
-        for (int lane = 0; lane < LANES_OF(t, first); lane++) cells_scatter(&l, lane, value[lane], cells);
-    })
-    exchange_plane(s, b, cells, into, true);
-}
-
-/* Σ_i (Δt/m_i) (a · G_ip)² of one lane; the inverse masses are the fourth component of the node vectors. */
-SIMD_INLINE real response(const fibre_lanes *l, int lane, kernel_kind kernel, real scale, const real *window) {
-    const vec u[3] = {l->at.u.x, l->at.u.y, l->at.u.z};
-    const real a[3] = {l->a.x[lane], l->a.y[lane], l->a.z[lane]};
-    int nodes = kernel == KERNEL_QUADRATIC ? 3 : 4;
-    real w[3][4], x[3][4], sum = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        vec weight[4];
-        kernel_weights(kernel, u[axis], weight);
-        for (int n = 0; n < nodes; n++) {
-            w[axis][n] = weight[n][lane];
-            x[axis][n] = a[axis] * ((real)n - u[axis][lane]);
-        }
-    }
-    const real *from = window + (int)window_index(l->at.base)[lane] * NODE;
-    for (int i = 0; i < nodes; i++)
-        for (int j = 0; j < nodes; j++)
-            for (int n = 0; n < nodes; n++) {
-                real gradient = scale * w[0][i] * w[1][j] * w[2][n] * (x[0][i] + x[1][j] + x[2][n]);
-                sum += gradient * gradient * from[(i * STRIDE_X + j * STRIDE_Y + n) * NODE + 3];
-            }
-    return sum;
-}
-
-SIMD_INLINE void precondition_block(pass_context *c, int32_t index, int worker, kernel_kind kernel) {
-    solid *s = c->state;
-    const solid_block *b = &s->blocks[index];
-    if (!block_is_inextensible(s, b)) return;
-    solid_worker *own = &s->workers[worker];
-    real *cells = own->implicit_window, scale = gradient_scale(s, kernel);
-    exchange_vectors(s, b, own->window, false);
-    memset(cells, 0, WINDOW_NODES * sizeof *cells);
-    FOR_EACH_PART(s, b, {
-        fibre_lanes l = lanes_load(s, kernel, pack, part);
-        for (int lane = 0; lane < LANES_OF(t, first); lane++)
-            cells_scatter(&l, lane, l.volume[lane] * response(&l, lane, kernel, scale, own->window), cells);
-    })
-    exchange_plane(s, b, cells, PRECONDITIONER, true);
-}
-
-/* The cells' tensions back to the particles: the next solve starts from them. */
-SIMD_INLINE void keep_block(pass_context *c, int32_t index, int worker, kernel_kind kernel) {
-    solid *s = c->state;
-    const solid_block *b = &s->blocks[index];
-    if (!block_is_inextensible(s, b)) return;
-    real *cells = s->workers[worker].implicit_window;
-    exchange_plane(s, b, cells, TENSION, false);
-    FOR_EACH_PART(s, b, {
-        fibre_lanes l = lanes_load(s, kernel, pack, part);
-        real *tension = field_at(&s->fields[s->tension_field], pack, 0, part);
-        for (int lane = 0; lane < LANES_OF(t, first); lane++) tension[lane] = cells_gather(&l, lane, cells);
-    })
-}
-
-#define PASSES(name, kernel)                                                                                           \
-    static void start_##name(void *context, int64_t i, int worker) {                                                   \
-        pass_context *c = context;                                                                                     \
-        start_block(c, c->blocks[i], worker, kernel);                                                                  \
-    }                                                                                                                  \
-    static void spread_##name(void *context, int64_t i, int worker) {                                                  \
-        pass_context *c = context;                                                                                     \
-        spread_block(c, c->blocks[i], worker, kernel);                                                                 \
-    }                                                                                                                  \
-    static void image_##name(void *context, int64_t i, int worker) {                                                   \
-        pass_context *c = context;                                                                                     \
-        collect_block(c, c->blocks[i], worker, kernel, IMAGE);                                                         \
-    }                                                                                                                  \
-    static void right_##name(void *context, int64_t i, int worker) {                                                   \
-        pass_context *c = context;                                                                                     \
-        collect_block(c, c->blocks[i], worker, kernel, RESIDUAL);                                                      \
-    }                                                                                                                  \
-    static void precondition_##name(void *context, int64_t i, int worker) {                                            \
-        pass_context *c = context;                                                                                     \
-        precondition_block(c, c->blocks[i], worker, kernel);                                                           \
-    }                                                                                                                  \
-    static void keep_##name(void *context, int64_t i, int worker) {                                                    \
-        pass_context *c = context;                                                                                     \
-        keep_block(c, c->blocks[i], worker, kernel);                                                                   \
-    }
-PASSES(quadratic, KERNEL_QUADRATIC)
-PASSES(cubic, KERNEL_CUBIC)
-
-typedef void block_pass(void *context, int64_t i, int worker);
-#define PASS(s, name) ((s)->definition.kernel == KERNEL_CUBIC ? name##_cubic : name##_quadratic)
-
-static void by_colour(solid *s, real dt, block_pass *pass) {
-    pass_context c = {.state = s, .dt = dt};
-    for (int colour = 0; colour < s->colour_count; colour++) {
-        c.blocks = s->colour_blocks + s->colour_start[colour];
-        parallel_for(s->threads, s->colour_start[colour + 1] - s->colour_start[colour], 1, pass, &c);
-    }
-}
-
 /* ---- nodes and cells, slot by slot ------------------------------------------------------------------------------- */
+
+typedef void slot_pass(void *context, int64_t slot, int worker);
 
 typedef struct slot_context {
     solid *state;
     real dt, factor;
-    block_pass *pass;
+    slot_pass *pass;
 } slot_context;
 
 static void on_listed_slot(void *context, int64_t i, int worker) {
@@ -361,7 +98,7 @@ static void list_slots(solid *s) {
         if (c->reached[slot]) c->slots[c->slot_count++] = slot;
 }
 
-static void over_slots(solid *s, block_pass *pass, slot_context *context) {
+static void over_slots(solid *s, slot_pass *pass, slot_context *context) {
     context->pass = pass;
     parallel_for(s->threads, s->constraint.slot_count, 32, on_listed_slot, context);
 }
@@ -401,7 +138,7 @@ static void prepare_slot(void *context, int64_t slot, int worker) {
     for (int n = 0; n < BLOCK_NODES; n++) {
         tension[n] = weight[n] > 0 ? tension[n] / weight[n] : 0;
         strain[n] = weight[n] > 0 ? strain[n] / weight[n] : 0;
-        search[n] = tension[n];
+        search[n] = 0;
         sums.first += (double)weight[n] * (double)weight[n];
         double speed2 = 0;
         for (int i = 0; i < 3; i++) {
@@ -412,6 +149,32 @@ static void prepare_slot(void *context, int64_t slot, int worker) {
         v[n * NODE + 3] = s->constraint.holds[slot * BLOCK_NODES + n].kind == HOLD_FIXED ? 0 : inverse_mass(nodes[n * NODE + 3], c->dt);
     }
     s->constraint.sums[slot] = sums;
+}
+
+/* Node vectors ← the normals of holds and Δt/m. */
+static void hold_normals_slot(void *context, int64_t slot, int worker) {
+    (void)worker;
+    slot_context *c = context;
+    real *v = vectors(c->state, slot);
+    for (int n = 0; n < BLOCK_NODES; n++) {
+        const node_hold *h = &c->state->constraint.holds[slot * BLOCK_NODES + n];
+        bool in_plane = h->kind == HOLD_PLANE || h->kind == HOLD_TOUCHING;
+        for (int i = 0; i < 3; i++) v[n * NODE + i] = in_plane ? h->normal[i] : 0;
+        if (h->kind == HOLD_STUCK) v[n * NODE + 3] = 0;
+    }
+}
+
+/* The nodes' fourth component ← T_i = Σ_q w_iq V_q |λ_q| / m_i; a node whose velocity is prescribed does not swing. */
+static void wave_slot(void *context, int64_t slot, int worker) {
+    (void)worker;
+    slot_context *c = context;
+    solid *s = c->state;
+    const real *nodes = s->grid + slot * BLOCK_NODES * NODE;
+    real *v = vectors(s, slot);
+    for (int n = 0; n < BLOCK_NODES; n++) {
+        bool swings = nodes[n * NODE + 3] > 0 && s->constraint.holds[slot * BLOCK_NODES + n].kind != HOLD_FIXED;
+        v[n * NODE + 3] = swings ? v[n * NODE + 3] / nodes[n * NODE + 3] : 0;
+    }
 }
 
 static void clear_vectors(void *context, int64_t slot, int worker) {
@@ -454,16 +217,20 @@ static void residual_slot(void *context, int64_t slot, int worker) {
     s->constraint.sums[slot] = sums;
 }
 
-/* Adds the share of the diagonal that keeps the operator definite. Sums: first Σ (Bv*)². */
+/* Drops the cells that pull at little but held nodes, and adds the share of the diagonal that keeps the operator definite. Sums: first
+ * Σ (Bv*)². */
 static void regularise_slot(void *context, int64_t slot, int worker) {
     (void)worker;
     slot_context *c = context;
     solid *s = c->state;
-    const real *r = plane(s, slot, RESIDUAL), *weight = plane(s, slot, WEIGHT), *response = plane(s, slot, PRECONDITIONER);
-    real *relaxation = plane(s, slot, RELAXATION);
+    real *r = plane(s, slot, RESIDUAL), *weight = plane(s, slot, WEIGHT), *response = plane(s, slot, PRECONDITIONER);
+    real *relaxation = plane(s, slot, RELAXATION), *tension = plane(s, slot, TENSION), *search = plane(s, slot, SEARCH);
+    const real *pull = plane(s, slot, PULL), *free_pull = plane(s, slot, FREE_PULL);
     constraint_sums sums = {0};
     for (int n = 0; n < BLOCK_NODES; n++) {
+        if (!(free_pull[n] > FREE_SHARE * pull[n])) r[n] = weight[n] = response[n] = relaxation[n] = tension[n] = 0;
         relaxation[n] += REGULARISATION * weight[n] * response[n];
+        search[n] = tension[n];
         sums.first += (double)r[n] * (double)r[n];
     }
     s->constraint.sums[slot] = sums;
@@ -592,19 +359,20 @@ double constraint_relaxation(const solid *s, int32_t slot, int n) {
 /* IMAGE ← (B M⁻¹ Bᵀ + ε) SEARCH */
 static void apply_operator(solid *s, slot_context *c) {
     over_slots(s, clear_vectors, c);
-    by_colour(s, c->dt, PASS(s, spread));
+    constraint_sweep(s, c->dt, SWEEP_SPREAD);
     over_slots(s, respond_slot, c);
-    by_colour(s, c->dt, PASS(s, image));
+    constraint_sweep(s, c->dt, SWEEP_IMAGE);
 }
 
 /* Sets up right-hand side, preconditioner and first residual; *enough is the square of the residual to reach. */
 static constraint_sums begin(solid *s, slot_context *c, double *enough) {
     over_slots(s, clear_cells, c);
-    by_colour(s, c->dt, PASS(s, start));
+    constraint_sweep(s, c->dt, SWEEP_START);
     over_slots(s, prepare_slot, c);
     constraint_sums size = sum_slots(s);
-    by_colour(s, c->dt, PASS(s, right));
-    by_colour(s, c->dt, PASS(s, precondition));
+    constraint_sweep(s, c->dt, SWEEP_RIGHT);
+    over_slots(s, hold_normals_slot, c);
+    constraint_sweep(s, c->dt, SWEEP_RESPOND);
     over_slots(s, regularise_slot, c);
     double right = sum_slots(s).first, tolerance = s->constraint.tolerance;
     /* What rounding leaves of velocities that cancel cannot be solved for. */
@@ -642,7 +410,8 @@ static status iterate(solid *s, slot_context *c, report *r) {
     status code = STATUS_OK;
     constraint_map(s);
     bool fresh = true; /* p starts from z */
-    for (int i = 0, since = 0, built = 0; code == STATUS_OK && square > enough && i < ITERATION_LIMIT; i++, since++) {
+    int since = 0, built = 0; /* iterations since the solve's start or its own preconditioner */
+    for (int i = 0; code == STATUS_OK && square > enough && i < ITERATION_LIMIT; i++, since++) {
         if (!isfinite(square))
             return report_set(r, STATUS_DIVERGED, "inextensible fibres (effect inextensible): iteration %d of the tension is not finite", i);
         if (constraint_is_slow(s, since, built)) {
@@ -666,11 +435,13 @@ static status iterate(solid *s, slot_context *c, report *r) {
         s->constraint.iterations++;
     }
     if (code != STATUS_OK) return code;
+    constraint_solved(s, since, built);
     s->constraint.solves++;
     over_slots(s, search_tension_slot, c);
     over_slots(s, clear_vectors, c);
-    by_colour(s, c->dt, PASS(s, spread));
-    by_colour(s, c->dt, PASS(s, keep));
+    constraint_sweep(s, c->dt, SWEEP_SPREAD);
+    over_slots(s, wave_slot, c);
+    constraint_sweep(s, c->dt, SWEEP_KEEP);
     return STATUS_OK;
 }
 

@@ -17,8 +17,10 @@ status constraint_solve(solid *s, real dt, report *r);
  * take too much work, when it is slow: decided by iterations and operations, never by time, so that runs repeat. */
 typedef enum constraint_solver { CONSTRAINT_AUTO, CONSTRAINT_JACOBI, CONSTRAINT_DIRECT, CONSTRAINT_AMG } constraint_solver;
 
-/* Whether it is time to make a (new) preconditioner, `since` iterations after the solve's start or its last making. */
+/* Whether it is time to make a (new) preconditioner, `since` iterations after the solve's start or its last making; `built` are the solve's own. */
 bool constraint_is_slow(const solid *s, int since, int built);
+/* Takes note of a solve that has ended. */
+void constraint_solved(solid *s, int since, int built);
 /* Makes one from the operator as it is. It serves the steps that follow, too. */
 status constraint_precondition(solid *s, real dt, report *r);
 /* Finds its unknowns again after the grid was built anew. */

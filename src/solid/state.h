@@ -126,6 +126,7 @@ typedef struct fibre_constraint {
     struct sparse_solver *preconditioner; /* NULL: Jacobi's */
     bool refused;  /* no library is worth its work for now */
     int eager;     /* solves to come that make a preconditioner at once */
+    int fresh, stale, price, uses; /* of a library's: iterations of its first solve, those beyond them since, its cost in iterations, solves since its first */
     bool mapped;   /* `number` belongs to the slots as they are */
     double *vector;        // [2][vector_size], what the preconditioner reads and writes
     int32_t (*unknown)[3]; // [vector_size], cells in grid coordinates
@@ -189,7 +190,7 @@ struct solid {
     solid_field fields[FIELD_LIMIT];
     int density_scale, stiffness_scale, toughness_scale, viscosity_scale, gamma_scale; /* the same: parameters that vary in place */
     int given_stiffness, given_toughness; /* of those the ones that the definition brings, where softening has its own */
-    int damage_field, history_field, fibre_field, fibre2_field, tension_field, snapped_field, swelling_field; /* indices, −1 when absent */
+    int damage_field, history_field, fibre_field, fibre2_field, tension_field, fibre_wave_field, snapped_field, swelling_field; /* indices, −1 when absent */
 
     int32_t tile_count, tile_capacity, result_capacity, block_count, block_capacity, colour_capacity;
     solid_tile *tiles;

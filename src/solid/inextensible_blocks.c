@@ -107,17 +107,20 @@ SIMD_INLINE void spread_block(pass_context *c, int32_t index, int worker, kernel
     exchange_vectors(s, b, own->window, true);
 }
 
-/* a · (Σ_i w_i v_i (x_i − x_p)ᵀ) a of the lanes of one part, from gathered records. */
-SIMD_INLINE vec stretching(const fibre_lanes *l, const real *records, int first) {
+/* A particle's fibre in a field of velocities: the rate of its stretching a · L a, and |L a|² beside it. */
+typedef struct fibre_rate {
+    vec along, across_square;
+} fibre_rate;
+
+/* Of the lanes of one part, from gathered records; `scale` is gradient_scale's. */
+SIMD_INLINE fibre_rate rate_of(const fibre_lanes *l, const real *records, int first, real scale) {
     const vec a[3] = {l->a.x, l->a.y, l->a.z};
-    vec rate = vec_all(0), out[RECORD - G2P_OUT];
+    vec out[RECORD - G2P_OUT], turned[3];
     records_load(records, first, G2P_OUT, out, RECORD - G2P_OUT);
-    for (int column = 0; column < 3; column++) {
-        vec along = vec_all(0);
-        for (int c = 0; c < 3; c++) along = vec_fma(a[c], out[4 + 4 * column + c], along);
-        rate = vec_fma(along, a[column], rate);
-    }
-    return rate;
+    for (int c = 0; c < 3; c++) turned[c] = scale * vec_fma(out[4 + c], a[0], vec_fma(out[8 + c], a[1], out[12 + c] * a[2]));
+    vec along = vec_fma(turned[0], a[0], vec_fma(turned[1], a[1], turned[2] * a[2]));
+    vec square = vec_fma(turned[0], turned[0], vec_fma(turned[1], turned[1], turned[2] * turned[2]));
+    return (fibre_rate){along, vec_max(square - along * along, vec_all(0))};
 }
 
 SIMD_INLINE void gather_records(real *records, int first, int lanes, const fibre_lanes *l, kernel_kind kernel, const node_row node_offset,
@@ -136,7 +139,8 @@ SIMD_INLINE void gather_records(real *records, int first, int lanes, const fibre
     for (int lane = lanes; lane < VEC_LANES; lane++) memset(records + (first + lane) * RECORD + G2P_OUT, 0, 16 * sizeof(real));
 }
 
-/* A plane of cells += B nodes; the right-hand side also asks for what fibres have stretched so far. */
+/* A plane of cells += B nodes; the right-hand side also asks for what fibres have stretched so far, and for what turning will: after a step |a + Δt L a| is
+ * one where a · L a = −Δt |L a − a (a · L a)|²/2, to third order, and tension changes the part along a only. */
 SIMD_INLINE void collect_block(pass_context *c, int32_t index, int worker, kernel_kind kernel, int into) {
     solid *s = c->state;
     const solid_block *b = &s->blocks[index];
@@ -151,10 +155,13 @@ SIMD_INLINE void collect_block(pass_context *c, int32_t index, int worker, kerne
     FOR_EACH_PART(s, b, {
         fibre_lanes l = lanes_load(s, kernel, pack, part);
         gather_records(own->tile.records, first, LANES_OF(t, first), &l, kernel, node_offset, own->window);
-        vec value = l.volume * scale * stretching(&l, own->tile.records, first);
-        if (into == RESIDUAL)
+        fibre_rate rate = rate_of(&l, own->tile.records, first, scale);
+        vec value = l.volume * rate.along;
+        if (into == RESIDUAL) {
+            value += l.volume * vec_min((real)0.5 * c->dt * rate.across_square, vec_all(CORRECTED_MOST / c->dt));
             for (int lane = 0; lane < LANES_OF(t, first); lane++)
                 value[lane] += l.volume[lane] * cells_gather(&l, lane, cells + WINDOW_NODES);
+        }
         for (int lane = 0; lane < LANES_OF(t, first); lane++) cells_scatter(&l, lane, value[lane], cells);
     })
     exchange_plane(s, b, cells, into, true);

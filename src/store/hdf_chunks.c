@@ -14,6 +14,8 @@ enum {
     CHUNK_BYTES = 1 << 17,
     SAMPLE_BYTES = 1 << 13,
     SAMPLES = 2048, /* bytes of a plane that are counted */
+    MEMORY_LEVEL = 8,    /* zlib's default */
+    STORED_MOST = 65535, /* bytes of one of deflate's stored blocks */
 };
 static const double NOISE_BITS = 7;
 
@@ -25,10 +27,11 @@ typedef struct packer {
     char *padded;          /* [chunk_bytes] */
     unsigned char *mixed;  /* [chunk_bytes] shuffled */
     unsigned char *packed; /* [chunk_bytes]: what does not fit is not worth packing */
+    size_t used, room;     /* bytes of `packed` */
     size_t element;        /* bytes of one element */
-    int level, strategy;   /* of the whole array */
+    int level;
     bool by_plane;         /* each plane's worth is looked at */
-    z_stream stream;
+    z_stream stream;       /* deflate's own format, without zlib's head and sum */
 } packer;
 
 static size_t row_bytes(const hdf_array *array) {
@@ -60,38 +63,83 @@ static bool is_noise(const unsigned char *plane, size_t bytes) {
     return taken >= SAMPLES / 2 && bits > NOISE_BITS * taken;
 }
 
-/* Deflates `bytes` shuffled bytes, planes of noise as they are; 0 when the result would not fit (it is no smaller than what went in). */
-static size_t pack(packer *p, size_t bytes) {
-    deflateReset(&p->stream);
-    p->stream.next_in = p->mixed;
-    p->stream.avail_in = 0;
-    p->stream.next_out = p->packed;
-    p->stream.avail_out = (uInt)bytes;
-    int planes = p->by_plane ? (int)p->element : 1, state = Z_OK;
-    for (int k = 0; k < planes && state == Z_OK; k++) {
-        size_t plane = bytes / (size_t)planes;
-        int level = planes > 1 && is_noise(p->mixed + plane * (size_t)k, plane) ? 0 : p->level;
-        state = deflateParams(&p->stream, level, p->strategy); /* what has been put in so far is packed as it was to be */
-        p->stream.avail_in = (uInt)plane;
-        if (state == Z_OK) state = deflate(&p->stream, k + 1 < planes ? Z_NO_FLUSH : Z_FINISH);
-    }
-    return state == Z_STREAM_END ? p->stream.total_out : 0;
+/* Appends to what is packed; false when there is no room. */
+static bool put(packer *p, const void *bytes, size_t count) {
+    if (count > p->room - p->used) return false;
+    memcpy(p->packed + p->used, bytes, count);
+    p->used += count;
+    return true;
 }
 
-/* Tries both strategies on a piece from the middle of the array and keeps the one that packs it better. */
-static void choose_strategy(packer *p, const hdf_array *array) {
+/* Appends bytes as they are, in deflate's stored blocks (RFC 1951, 3.2.4). What is before ends with a whole byte. */
+static bool store(packer *p, const unsigned char *from, size_t count, bool last) {
+    while (count > 0) {
+        unsigned size = (unsigned)(count < STORED_MOST ? count : STORED_MOST), other = ~size;
+        const unsigned char head[5] = {last && size == count, (unsigned char)size, (unsigned char)(size >> 8), (unsigned char)other,
+                                       (unsigned char)(other >> 8)};
+        if (!put(p, head, sizeof head) || !put(p, from, size)) return false;
+        from += size, count -= size;
+    }
+    return true;
+}
+
+/* Appends bytes deflated. They are searched for repeats of each other alone: deflate does not know of blocks that were stored without it. */
+static bool squeeze(packer *p, unsigned char *from, size_t count, bool last) {
+    z_stream *z = &p->stream;
+    if (deflateReset(z) != Z_OK) return false;
+    z->next_in = from;
+    z->avail_in = (uInt)count;
+    z->next_out = p->packed + p->used;
+    z->avail_out = (uInt)(p->room - p->used);
+    int state = deflate(z, last ? Z_FINISH : Z_SYNC_FLUSH);
+    p->used = p->room - z->avail_out;
+    return last ? state == Z_STREAM_END : state == Z_OK && z->avail_out > 0;
+}
+
+/* Makes a zlib stream (RFC 1950) of `bytes` shuffled bytes, planes of noise as they are; 0 when it would be no smaller than what went in. */
+static size_t pack(packer *p, size_t bytes) {
+    static const unsigned char head[2] = {0x78, 0x01};
+    size_t planes = p->by_plane ? p->element : 1, plane = bytes / planes;
+    bool noise[sizeof(int64_t)] = {false}, fits;
+    for (size_t k = 0; k < planes && planes > 1; k++) noise[k] = is_noise(p->mixed + plane * k, plane);
+    p->used = 0;
+    p->room = bytes;
+    fits = put(p, head, sizeof head);
+    for (size_t k = 0, end; k < planes && fits; k = end) {
+        for (end = k + 1; end < planes && noise[end] == noise[k];) end++;
+        unsigned char *from = p->mixed + plane * k;
+        fits = noise[k] ? store(p, from, plane * (end - k), end == planes) : squeeze(p, from, plane * (end - k), end == planes);
+    }
+    uint32_t sum = fits ? (uint32_t)adler32(1, p->mixed, (uInt)bytes) : 0;
+    const unsigned char tail[4] = {(unsigned char)(sum >> 24), (unsigned char)(sum >> 16), (unsigned char)(sum >> 8), (unsigned char)sum};
+    return fits && put(p, tail, sizeof tail) ? p->used : 0;
+}
+
+static bool set_strategy(packer *p, int strategy, bool by_plane) {
+    p->by_plane = by_plane;
+    bool fresh = deflateReset(&p->stream) == Z_OK;
+    p->stream.avail_in = 0;
+    p->stream.next_out = p->packed; /* older versions of zlib ask for room, though there is nothing to write */
+    p->stream.avail_out = (uInt)p->chunk_bytes;
+    return fresh && deflateParams(&p->stream, p->level, strategy) == Z_OK;
+}
+
+/* What the first `bytes` shuffled bytes come to. */
+static size_t try_strategy(packer *p, int strategy, bool by_plane, size_t bytes) {
+    size_t packed = set_strategy(p, strategy, by_plane) ? pack(p, bytes) : 0;
+    return packed > 0 ? packed : bytes;
+}
+
+/* Tries a piece from the middle of the array. Where a search for repeats finds next to none, only runs and frequencies of single bytes are looked for;
+ * where it finds most of the array, it gets all of it, and else what is not noise: searching that takes most of the time for next to nothing. */
+static bool choose_strategy(packer *p, const hdf_array *array) {
     size_t total = row_bytes(array) * (size_t)array->count;
     size_t bytes = (size_t)SAMPLE_BYTES < p->chunk_bytes ? (size_t)SAMPLE_BYTES : p->chunk_bytes;
     bytes -= bytes % p->element;
     size_t start = (total - bytes) / 2;
     shuffle(p->mixed, (const char *)array->data + start - start % p->element, bytes / p->element, p->element);
-    p->strategy = Z_DEFAULT_STRATEGY;
-    size_t searched = pack(p, bytes);
-    p->strategy = Z_RLE;
-    size_t runs = pack(p, bytes);
-    bool repeats = searched > 0 && (runs == 0 || searched < runs - runs / 8);
-    if (repeats) p->strategy = Z_DEFAULT_STRATEGY;
-    else p->by_plane = p->element > 1;
+    size_t searched = try_strategy(p, Z_DEFAULT_STRATEGY, false, bytes), runs = try_strategy(p, Z_RLE, p->element > 1, bytes);
+    return set_strategy(p, searched < runs - runs / 8 ? Z_DEFAULT_STRATEGY : Z_RLE, p->element > 1 && searched >= runs / 2);
 }
 
 static status packer_begin(packer *p, const char *path, const hdf_array *array, int level, report *r) {
@@ -99,12 +147,12 @@ static status packer_begin(packer *p, const char *path, const hdf_array *array, 
     p->chunk_bytes = (size_t)hdf_chunk_rows(array) * row_bytes(array);
     p->block_bytes = 3 * p->chunk_bytes;
     p->block = memory_allocate(p->block_bytes);
-    if (p->block && deflateInit(&p->stream, level) == Z_OK) {
+    if (p->block && deflateInit2(&p->stream, level, Z_DEFLATED, -MAX_WBITS, MEMORY_LEVEL, Z_DEFAULT_STRATEGY) == Z_OK) {
         p->padded = p->block;
         p->mixed = (unsigned char *)p->block + p->chunk_bytes;
         p->packed = (unsigned char *)p->block + 2 * p->chunk_bytes;
-        choose_strategy(p, array);
-        return STATUS_OK;
+        if (choose_strategy(p, array)) return STATUS_OK;
+        deflateEnd(&p->stream);
     }
     memory_free(p->block, p->block_bytes);
     return report_set(r, STATUS_SYSTEM, "%s: out of memory to compress '%s'", path, array->name);

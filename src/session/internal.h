@@ -90,7 +90,7 @@ struct session {
     pthread_mutex_t lock; /* guards shown and warning */
     pthread_mutex_t ledger_lock; /* of every call while both threads run */
     filing filing;
-    int64_t checkpointed; /* the last frame whose checkpoint was handed over, −1: none */
+    int64_t checkpointed, checkpointed_steps; /* the last frame whose checkpoint was handed over, −1: none; steps made by then */
     session_snapshot shown;
     session_knobs_state knobs;
     atomic_llong pause_at; /* −1: none */

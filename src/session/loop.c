@@ -76,6 +76,7 @@ static frame_header header_of(const session *s) {
 static status gather_checkpoint(session *s, filing_work *w, report *r) {
     w->parts |= FILING_CHECKPOINT;
     s->checkpointed = w->header.frame;
+    s->checkpointed_steps = w->header.step;
     status code = simulation_save(s->simulation, &w->checkpoint, r);
     return code == STATUS_OK ? turns_save(s, &w->checkpoint, r) : code;
 }
@@ -83,15 +84,22 @@ static status gather_checkpoint(session *s, filing_work *w, report *r) {
 /* A branch has its past from its parent: its frames are there, and its rows. What it needs of its own is a checkpoint where it begins. */
 static int past_parts(const session *s) {
     int64_t frame = s->measures.frame;
-    bool due = s->options.checkpoint_every > 0 && (frame == s->past_from || frame == s->past_until) && !checkpoint_exists(s->folder, frame);
+    bool due = s->options.checkpoint_every != 0 && (frame == s->past_from || frame == s->past_until) && !checkpoint_exists(s->folder, frame);
     return (frame_exists(s->folder, frame) ? 0 : FILING_FRAME) | (due ? FILING_CHECKPOINT : 0);
+}
+
+static bool checkpoint_due(const session *s) {
+    const session_options *o = &s->options;
+    if (o->checkpoint_every == 0) return false;
+    if (s->measures.frame == s->target || atomic_load(&s->stop)) return true;
+    if (o->checkpoint_every > 0) return s->measures.frame % o->checkpoint_every == 0;
+    bool to_resume_only = o->keep > 0 && o->keep_bytes <= 0;
+    return !to_resume_only || s->checkpointed < 0 || s->measures.steps - s->checkpointed_steps >= SESSION_CHECKPOINT_STEPS;
 }
 
 static int due_parts(const session *s) {
     if (s->measures.frame <= s->past_until) return past_parts(s);
-    int every = s->options.checkpoint_every;
-    bool due = every > 0 && (s->measures.frame % every == 0 || s->measures.frame == s->target || atomic_load(&s->stop));
-    return FILING_FRAME | FILING_LOG | (due ? FILING_CHECKPOINT : 0);
+    return FILING_FRAME | FILING_LOG | (checkpoint_due(s) ? FILING_CHECKPOINT : 0);
 }
 
 static status gather(session *s, int parts, filing_work *w, report *r) {
@@ -108,7 +116,7 @@ static status settle_frame(session *s, double seconds, bool file, report *r) {
     const char *warning = simulation_take_warning(s->simulation);
     if (warning[0]) session_warn(s, s->measures.frame, warning);
     take_sample(s, seconds);
-    if (!file) s->checkpointed = s->measures.frame; /* a resumed run comes from there */
+    if (!file) s->checkpointed = s->measures.frame, s->checkpointed_steps = s->measures.steps; /* a resumed run comes from there */
     filing_work w = {.header = header_of(s), .measures = s->measures, .seconds = seconds};
     code = gather(s, file ? due_parts(s) : 0, &w, r);
     if (code == STATUS_OK) return filing_hand_over(s, &w, r);
@@ -119,7 +127,7 @@ static status settle_frame(session *s, double seconds, bool file, report *r) {
 /* A run that is stopped between two checkpoints leaves one where it stops. */
 static status settle_stop(session *s, report *r) {
     int64_t frame = simulation_frame(s->simulation);
-    if (s->options.checkpoint_every <= 0 || atomic_load(&s->abandon) || s->checkpointed == frame || frame <= s->past_until) return STATUS_OK;
+    if (s->options.checkpoint_every == 0 || atomic_load(&s->abandon) || s->checkpointed == frame || frame <= s->past_until) return STATUS_OK;
     filing_work w = {.header = header_of(s), .measures = s->measures};
     status code = gather_checkpoint(s, &w, r);
     if (code == STATUS_OK) return filing_hand_over(s, &w, r);

@@ -14,7 +14,7 @@
 
 session_options session_options_default(void) {
     return (session_options){.script = script_options_default(), .simd = "auto", .precision = 32, .frames = -1,
-                             .checkpoint_every = 1, .keep = 2, .deflate = 1};
+                             .checkpoint_every = CHECKPOINTS_AS_NEEDED, .keep = 2, .deflate = 1};
 }
 
 /* ---- folders that this process writes ---------------------------------------------------------------------------- */

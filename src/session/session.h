@@ -27,7 +27,7 @@ typedef struct session_options {
     int threads;          /* 0: all cores */
     int precision;        /* 32 or 64 */
     int64_t frames;       /* −1: the scene's */
-    int checkpoint_every; /* frames; 0: none */
+    int checkpoint_every; /* frames; 0: none; CHECKPOINTS_AS_NEEDED */
     int keep;             /* checkpoints kept; 0: all */
     int64_t keep_bytes;   /* above 0 instead: a ring of checkpoints within so many bytes, dense where it is new, sparse where it is old, frame 0 always */
     const char *branch_of; /* --branch: a run's id, its unique prefix or "last"; NULL for none */
@@ -37,6 +37,10 @@ typedef struct session_options {
     int deflate;          /* 0–9 */
     bool start_paused;
 } session_options;
+
+/* Every frame where older checkpoints stay, to go back to (keep 0, keep_bytes). Where the newest stay alone, for who resumes: the first frame, the
+ * last, and those that are SESSION_CHECKPOINT_STEPS steps or more past the last checkpoint, since frames of few steps are sooner made than secured. */
+enum { CHECKPOINTS_AS_NEEDED = -1, SESSION_CHECKPOINT_STEPS = 100 };
 
 session_options session_options_default(void);
 

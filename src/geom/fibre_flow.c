@@ -1,6 +1,7 @@
 /* Directions of a solved flow: by cube, then at the lattice's nodes, then everywhere. */
 #include "geom/fibre_flow.h"
 
+#include "base/threads.h"
 #include "geom/disjoint.h"
 #include "geom/fibre_flow_cells.h"
 #include "geom/vector.h"
@@ -158,27 +159,35 @@ enum { NODE_OPEN, NODE_DONE, NODE_NEXT };
 /* The nodes that have a direction, while they are being found. */
 typedef struct node_layers {
     const flow_cells *cells;
+    const flow_field *field;
     fibre_flow *flow;
     uint8_t *state; // [nodes] NODE_…
     int32_t *queue; // [nodes] in the order in which they get their direction
-    int64_t queued;
+    int64_t queued, first; /* the first of the layer that is being found */
+    bool linear;           /* whether it continues directions along their change */
 } node_layers;
 
 static void set_direction(node_layers *w, int64_t node, const double direction[3]) {
     for (int c = 0; c < 3; c++) w->flow->direction[node][c] = (float)direction[c];
 }
 
-static void fit_node(node_layers *w, const flow_field *f, const int at[3]) {
+static void fit_node(node_layers *w, const int at[3]) {
     int64_t node = flow_node(w->cells, at[0], at[1], at[2]);
     linear_fit near = {0}, fit = {0};
     double direction[3];
-    add_cubes(f, at, 1, &near);
+    add_cubes(w->field, at, 1, &near);
     if (near.matrix[0][0] < LEAST_BODY) return;
-    add_cubes(f, at, CUBES_AROUND, &fit);
+    add_cubes(w->field, at, CUBES_AROUND, &fit);
     if (!fit_solve(&fit, &CUBE_RULE, direction)) return;
     set_direction(w, node, direction);
     w->state[node] = NODE_DONE;
-    w->queue[w->queued++] = (int32_t)node;
+}
+
+static void fit_row(void *context, int64_t row, int worker) {
+    (void)worker;
+    node_layers *w = context;
+    int at[3] = {(int)(row / w->cells->nodes[1]), (int)(row % w->cells->nodes[1]), 0};
+    for (; at[2] < w->cells->nodes[2]; at[2]++) fit_node(w, at);
 }
 
 static void node_place(const flow_cells *c, int64_t node, int at[3]) {
@@ -235,13 +244,20 @@ static void queue_around(node_layers *w, int64_t node) {
             }
 }
 
+static void continue_of_layer(void *context, int64_t i, int worker) {
+    (void)worker;
+    node_layers *w = context;
+    continue_at(w, w->queue[w->first + i], w->linear);
+}
+
 /* Layer by layer outwards from the nodes that have a direction, each from the layers before it. */
 static void continue_outwards(node_layers *w) {
     int64_t first = 0;
     for (int layer = 0; first < w->queued; layer++) {
-        int64_t begin = w->queued;
+        int64_t begin = w->first = w->queued;
+        w->linear = layer < LINEAR_LAYERS;
         for (int64_t i = first; i < begin; i++) queue_around(w, w->queue[i]);
-        for (int64_t i = begin; i < w->queued; i++) continue_at(w, w->queue[i], layer < LINEAR_LAYERS);
+        parallel_for(processor_count(), w->queued - begin, 64, continue_of_layer, w);
         for (int64_t i = begin; i < w->queued; i++) w->state[w->queue[i]] = NODE_DONE;
         first = begin;
     }
@@ -250,15 +266,14 @@ static void continue_outwards(node_layers *w) {
 static status find_directions(const flow_field *f, fibre_flow *flow, report *r) {
     const flow_cells *c = f->cells;
     size_t nodes = (size_t)flow_node_count(c);
-    node_layers w = {.cells = c, .flow = flow};
+    node_layers w = {.cells = c, .field = f, .flow = flow};
     w.state = memory_allocate(nodes);
     w.queue = memory_allocate(nodes * sizeof *w.queue);
     bool fine = w.state && w.queue;
     if (fine) {
-        int at[3];
-        for (at[0] = 0; at[0] < c->nodes[0]; at[0]++)
-            for (at[1] = 0; at[1] < c->nodes[1]; at[1]++)
-                for (at[2] = 0; at[2] < c->nodes[2]; at[2]++) fit_node(&w, f, at);
+        parallel_for(processor_count(), (int64_t)c->nodes[0] * c->nodes[1], 4, fit_row, &w);
+        for (int64_t i = 0; i < (int64_t)nodes; i++)
+            if (w.state[i] == NODE_DONE) w.queue[w.queued++] = (int32_t)i;
         continue_outwards(&w);
     }
     memory_free(w.state, nodes);

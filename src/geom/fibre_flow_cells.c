@@ -107,10 +107,10 @@ static part_cut cut_part(const flow_builder *b, const shape *s, const flow_sampl
     return cut;
 }
 
-/* The body's share of a part. The normal comes from the distances at the cube's corners where they agree about it:
- * distances to meshes are dear. */
-static double body_share(const flow_builder *b, const double corner[8], const flow_sample *p) {
-    double step = p->size * b->cells->spacing, distance = shape_distance(b->d->body, p->x) / step, normal[3] = {0, 0, 0}, area;
+/* The body's share of a part, by its distance in the part's sides. The normal comes from the distances at the cube's corners where they agree
+ * about it: distances to meshes are dear. */
+static double body_share(const flow_builder *b, const double corner[8], const flow_sample *p, double distance) {
+    double step = p->size * b->cells->spacing, normal[3] = {0, 0, 0}, area;
     double share = distance < 0.0 ? 1.0 : 0.0, gradient[8][3];
     if (fabs(distance) >= HALF_DIAGONAL) return share;
     flow_gradient(p->place, gradient);
@@ -176,6 +176,8 @@ static void add_part(const flow_builder *b, const flow_sample *p, const bool nea
 static void integrate(const flow_builder *b, const double x[3], const double distance[8], const bool near[FLOW_SIDES],
                       flow_cell *cell, double matrix[64]) {
     memset(matrix, 0, 64 * sizeof *matrix);
+    double body = 0.0; /* the distance where it was asked for last, in the part's sides */
+    int clear = 0;     /* parts after that which lie on the same side of the surface altogether */
     for (int k = 0; k < PARTS * PARTS * PARTS; k++) {
         const int part[3] = {k / (PARTS * PARTS), k / PARTS % PARTS, k % PARTS};
         flow_sample p = {.size = 1.0 / PARTS};
@@ -183,7 +185,11 @@ static void integrate(const flow_builder *b, const double x[3], const double dis
             p.place[c] = (part[c] + 0.5) / PARTS;
             p.x[c] = x[c] + p.place[c] * b->cells->spacing;
         }
-        p.share = body_share(b, distance, &p);
+        if (k % PARTS == 0 || clear-- == 0) {
+            body = shape_distance(b->d->body, p.x) * PARTS / b->cells->spacing;
+            clear = fabs(body) > HALF_DIAGONAL ? (int)fmin(fabs(body) - HALF_DIAGONAL, PARTS) : 0;
+        }
+        p.share = body_share(b, distance, &p, body);
         add_part(b, &p, near, cell, matrix);
     }
     for (int c = 0; c < 3 && cell->share > 0.0; c++) cell->middle[c] /= cell->share;

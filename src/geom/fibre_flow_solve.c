@@ -24,13 +24,12 @@ static void multiply(const flow_cells *c, const double *direction, double *produ
     for (int64_t i = 0; i < c->cell_count; i++) {
         const flow_cell *cell = &c->cell[i];
         const double *matrix = c->matrix[cell->matrix];
-        double at[8];
-        for (int k = 0; k < 8; k++) at[k] = direction[cell->unknown[k]];
-        for (int k = 0; k < 8; k++) {
-            double sum = 0.0;
-            for (int l = 0; l < 8; l++) sum += matrix[8 * k + l] * at[l];
-            product[cell->unknown[k]] += sum;
+        double sum[8] = {0};
+        for (int l = 0; l < 8; l++) { /* by columns, which are rows too: eight sums at once */
+            double at = direction[cell->unknown[l]];
+            for (int k = 0; k < 8; k++) sum[k] += matrix[8 * l + k] * at;
         }
+        for (int k = 0; k < 8; k++) product[cell->unknown[k]] += sum[k];
     }
 }
 

@@ -10,12 +10,21 @@ static const double NORMAL_FLOOR = 1e-6;
 /* ---- primitives ---------------------------------------------------------------------------------------------------
  */
 
+/* Of numbers: fmax and fmin, which ask what else it might be, are calls, and a distance makes several. */
+static inline double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
+static inline double smaller(double a, double b) {
+    return a < b ? a : b;
+}
+
 static double box_distance(const shape *s, const double x[3]) {
     double outside = 0.0, nearest_face = -HUGE_VAL;
     for (int i = 0; i < 3; i++) {
         double beyond = fabs(x[i] - s->box.center[i]) - s->box.half[i];
         if (beyond > 0.0) outside += beyond * beyond;
-        nearest_face = fmax(nearest_face, beyond);
+        nearest_face = larger(nearest_face, beyond);
     }
     return outside > 0.0 ? sqrt(outside) : nearest_face;
 }
@@ -31,14 +40,14 @@ static void axial_and_radial(const double x[3], const double center[3], const do
 }
 
 static double rectangle_distance(double beyond_end, double beyond_side) {
-    double outside_end = fmax(beyond_end, 0.0), outside_side = fmax(beyond_side, 0.0);
-    return fmin(fmax(beyond_end, beyond_side), 0.0) + hypot(outside_end, outside_side);
+    if (beyond_end > 0.0 && beyond_side > 0.0) return hypot(beyond_end, beyond_side);
+    return larger(beyond_end, beyond_side);
 }
 
 static double segment_distance_squared(const double p[2], const double a[2], const double b[2]) {
     double along[2] = {b[0] - a[0], b[1] - a[1]}, d[2] = {p[0] - a[0], p[1] - a[1]};
     double t = (d[0] * along[0] + d[1] * along[1]) / (along[0] * along[0] + along[1] * along[1]);
-    t = fmin(fmax(t, 0.0), 1.0);
+    t = smaller(larger(t, 0.0), 1.0);
     double u = d[0] - t * along[0], v = d[1] - t * along[1];
     return u * u + v * v;
 }
@@ -49,7 +58,7 @@ static double quadrilateral_distance(const double p[2], const double corners[4][
     bool inside = true;
     for (int i = 0; i < 4; i++) {
         const double *a = corners[i], *b = corners[(i + 1) % 4];
-        nearest = fmin(nearest, segment_distance_squared(p, a, b));
+        nearest = smaller(nearest, segment_distance_squared(p, a, b));
         if ((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) < 0.0) inside = false;
     }
     return inside ? -sqrt(nearest) : sqrt(nearest);
@@ -59,7 +68,7 @@ static double tube_distance(const shape_tube_data *t, const double x[3]) {
     double p[2];
     axial_and_radial(x, t->center, t->axis, p);
     if (t->taper != 1.0) return quadrilateral_distance(p, t->section);
-    double beyond_side = fmax(p[1] - t->outer, t->inner > 0.0 ? t->inner - p[1] : -HUGE_VAL);
+    double beyond_side = larger(p[1] - t->outer, t->inner > 0.0 ? t->inner - p[1] : -HUGE_VAL);
     return rectangle_distance(fabs(p[0]) - 0.5 * t->length, beyond_side);
 }
 
@@ -73,7 +82,7 @@ static double capsule_distance(const shape *s, const double x[3]) {
     const double *along = s->capsule.along;
     double d[3], length_squared = vector_dot(along, along);
     vector_subtract(x, s->capsule.from, d);
-    double t = length_squared > 0.0 ? fmin(fmax(vector_dot(d, along) / length_squared, 0.0), 1.0) : 0.0;
+    double t = length_squared > 0.0 ? smaller(larger(vector_dot(d, along) / length_squared, 0.0), 1.0) : 0.0;
     for (int i = 0; i < 3; i++) d[i] -= t * along[i];
     return vector_length(d) - s->capsule.radius;
 }
@@ -104,19 +113,19 @@ static double transform_distance(const shape *s, const double x[3]) {
 
 static double union_distance(const shape *s, const double x[3]) {
     double least = HUGE_VAL;
-    for (int i = 0; i < s->count; i++) least = fmin(least, shape_distance(s->children[i], x));
+    for (int i = 0; i < s->count; i++) least = smaller(least, shape_distance(s->children[i], x));
     return least;
 }
 
 static double intersection_distance(const shape *s, const double x[3]) {
     double greatest = -HUGE_VAL;
-    for (int i = 0; i < s->count; i++) greatest = fmax(greatest, shape_distance(s->children[i], x));
+    for (int i = 0; i < s->count; i++) greatest = larger(greatest, shape_distance(s->children[i], x));
     return greatest;
 }
 
 static double difference_distance(const shape *s, const double x[3]) {
     double greatest = shape_distance(s->children[0], x);
-    for (int i = 1; i < s->count; i++) greatest = fmax(greatest, -shape_distance(s->children[i], x));
+    for (int i = 1; i < s->count; i++) greatest = larger(greatest, -shape_distance(s->children[i], x));
     return greatest;
 }
 

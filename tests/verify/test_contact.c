@@ -4,6 +4,8 @@
  * - A sticky wall holds; a separating wall lets go upwards and not downwards; a block thrown at a slip wall keeps its tangential momentum.
  * - A spinning grip turns the block with it: angular velocity of the particles is the grip's.
  * - No particle that starts in a protecting grip is ever damaged while the bar between two grips breaks; in grips that do not protect, some are.
+ * - Where several boundaries have hold of the same nodes, the one that they are left with has done the work: a block held by two grips that move apart, and
+ *   by a grip and a wall across it, has been given exactly its weight's work and twice its kinetic energy (a blow that lets nothing bounce loses the other half).
  * - Work done by grips equals the energy they put in, less what dissipates: never negative dissipation for a pulled bar. */
 #include "check.h"
 #include "verify/solid_scene.h"
@@ -168,7 +170,48 @@ static void no_gripped_particle_breaks(void) {
     CHECK(free > 0.9);
 }
 
+/* A block that boundaries hold throughout from the start, and gravity; work and impulse of the boundaries after some steps. */
+static void hold_twice(bool wall, const double first[3], const double second[3], double work[2], double *mass) {
+    static const double g[3] = {1, -2, 3};
+    scene *s = test_scene(block, 2e4, 0.3, 1);
+    simulation_measures m;
+    report r;
+    const double center[3] = {0, 0.27, 0}, floor[3] = {0, 5, 0}, up[3] = {0, 1, 0};
+    int gravity = effect_index("gravity");
+    s->effects[gravity].on = true;
+    memcpy(s->effects[gravity].value[0], g, sizeof g);
+    s->grips[s->grip_count++] = (scene_grip){.shape = shape_sphere(s->memory, center, 3), .stop = HUGE_VAL, .velocity = {.outputs = 3}};
+    memcpy(s->grips[0].velocity.constant, first, 3 * sizeof *first);
+    if (wall) {
+        s->colliders[s->collider_count++] = (scene_collider){.shape = shape_half_space(s->memory, floor, up), .stop = HUGE_VAL, .contact = CONTACT_SLIP, .velocity = {.outputs = 3}};
+        memcpy(s->colliders[0].velocity.constant, second, 3 * sizeof *second);
+    } else {
+        s->grips[s->grip_count++] = (scene_grip){.shape = shape_sphere(s->memory, center, 3), .stop = HUGE_VAL, .velocity = {.outputs = 3}};
+        memcpy(s->grips[1].velocity.constant, second, 3 * sizeof *second);
+    }
+    simulation *sim = test_simulation(s, 64, "auto", 2);
+    for (int k = 0; k < 100; k++) CHECK(simulation_step(sim, 1e-3, &r) == STATUS_OK);
+    simulation_measure(sim, &m, &r);
+    double left[3] = {wall ? first[0] : second[0], second[1], wall ? first[2] : second[2]}, expected = 0;
+    for (int c = 0; c < 3; c++) expected += m.solid.mass * left[c] * (left[c] - 0.1 * g[c]);
+    for (int c = 0; c < 3; c++) CHECK_NEAR(m.solid.momentum[c], m.solid.mass * left[c], 1e-12);
+    work[0] = expected, work[1] = m.solid.grip_work;
+    *mass = m.solid.mass;
+    simulation_destroy(sim);
+    scene_destroy(s);
+}
+
+static void what_holds_last_does_the_work(void) {
+    static const double first[3] = {0.5, 0.2, -0.1}, second[3] = {-0.4, 0.3, 0.2};
+    double work[2], mass;
+    hold_twice(false, first, second, work, &mass);
+    CHECK_ROW("METHOD 3", "block that two grips hold at different velocities: their work, over its mass", work[0] / mass, work[1] / mass, 1e-12);
+    hold_twice(true, first, second, work, &mass);
+    CHECK_ROW("METHOD 3", "block that a grip holds and a slip wall pushes: their work, over its mass", work[0] / mass, work[1] / mass, 1e-12);
+}
+
 int main(void) {
+    RUN(what_holds_last_does_the_work);
     RUN(friction_is_coulombs);
     RUN(a_separating_wall_lets_go);
     RUN(a_spinning_grip_turns_its_block);

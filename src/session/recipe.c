@@ -69,8 +69,22 @@ static status no_material(const session *s, int material, report *r) {
     return report_input(r, NULL, 0, "material", expected, found, NULL);
 }
 
-status session_save_recipe(session *s, int material, const char *path, report *r) {
+/* Recipes are found by their names without the `.lua` that their files end in. */
+static status recipe_file(const char *path, char file[SESSION_RECIPE], report *r) {
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *ending = strrchr(name, '.');
+    if (!*name || ending == name || (ending && strcmp(ending, ".lua") != 0))
+        return report_input(r, NULL, 0, "recipe", "a file name that ends in .lua, or has no ending", path, NULL);
+    if (snprintf(file, SESSION_RECIPE, "%s%s", path, ending ? "" : ".lua") >= SESSION_RECIPE)
+        return report_input(r, NULL, 0, "recipe", "a shorter path", path, NULL);
+    return STATUS_OK;
+}
+
+status session_save_recipe(session *s, int material, const char *path, char file[SESSION_RECIPE], report *r) {
+    char own[SESSION_RECIPE];
+    if (!file) file = own;
     if (material < 0 || material >= s->scene->material_count) return no_material(s, material, r);
+    status code = recipe_file(path, file, r);
+    if (code != STATUS_OK) return code;
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
@@ -82,7 +96,7 @@ status session_save_recipe(session *s, int material, const char *path, report *r
     put_origin(out, s, &s->knobs.asked->materials[material], frame);
     put_material(out, &s->knobs.asked->materials[material]);
     pthread_mutex_unlock(&s->knobs.lock);
-    status code = fclose(out) ? report_set(r, STATUS_SYSTEM, "out of memory for a recipe") : file_write_atomic(path, text, size, r);
+    code = fclose(out) ? report_set(r, STATUS_SYSTEM, "out of memory for a recipe") : file_write_atomic(file, text, size, r);
     free(text);
     return code;
 }

@@ -145,9 +145,10 @@ int session_turns(session *s, knob_turn *out, int limit);
 int session_checkpoints(session *s, int64_t *frames, int limit);
 
 /* Writes a material as it now is to a Lua file that loads as a recipe and resolves to the same values (by its name where recipes are looked for: in
- * recipes/ beside a scene or above it, or in $SUNDER_RECIPES). A file that is there is replaced.
- * Errors: no such material, a path that cannot be written. */
-status session_save_recipe(session *s, int material, const char *path, report *r);
+ * recipes/ beside a scene or above it, or in $SUNDER_RECIPES). A path without an ending gets `.lua`; `file` (may be NULL) is told the file that was written.
+ * A file that is there is replaced. Errors: no such material, another ending, a path that cannot be written. */
+enum { SESSION_RECIPE = 1024 };
+status session_save_recipe(session *s, int material, const char *path, char file[SESSION_RECIPE], report *r);
 
 /* Fields that this run can be coloured by, and the choice; from any thread. An unknown name is an input error with the nearest. The next
  * snapshot has it, while the run is paused or ended too. */

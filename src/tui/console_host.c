@@ -215,7 +215,7 @@ static status do_on_run(tui_app *app, const char *f, const char *first, const ch
     if (strcmp(f, "history") == 0) return history(app, first, w, r);
     if (strcmp(f, "checkpoints") == 0) return checkpoints(app, w);
     if (strcmp(f, "colour") == 0) return colour(app, first, w, r);
-    if (strcmp(f, "save_recipe") == 0) return session_save_recipe(app->run, second[0] ? atoi(second) - 1 : 0, first, r);
+    if (strcmp(f, "save_recipe") == 0) return session_save_recipe(app->run, second[0] ? atoi(second) - 1 : 0, first, NULL, r);
     if (strcmp(f, "pause") == 0) return app_do(app, "run.pause", "on", r);
     if (strcmp(f, "go") == 0) return app_do(app, "run.pause", "off", r);
     if (strcmp(f, "step") == 0) return app_do(app, "run.step", "", r);

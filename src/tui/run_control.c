@@ -211,7 +211,7 @@ static const char *recipe_file(void) {
 
 static void tell_recipe(tui_app *app, const char *material, const char *path) {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
-    int length = (int)strcspn(name, ".");
+    int length = (int)strlen(name) - (int)strlen(".lua");
     if (strncmp(path, "recipes/", 8) == 0) app_notice(app, "%s is in %s; --recipe %.*s takes it.", material, path, length, name);
     else app_notice(app, "%s is in %s; from a folder recipes/, --recipe %.*s takes it.", material, path, length, name);
 }
@@ -249,9 +249,10 @@ status run_save_recipe(tui_app *app, const char *argument, report *r) {
         material = k;
         path = argument + length + 1;
     }
-    s = session_save_recipe(app->run, material->material, path, r);
+    char file[SESSION_RECIPE];
+    s = session_save_recipe(app->run, material->material, path, file, r);
     if (s != STATUS_OK) return s;
-    app_log_argument(app, "%s %s", material->owner, path);
-    tell_recipe(app, material->owner, path);
+    app_log_argument(app, "%s %s", material->owner, file);
+    tell_recipe(app, material->owner, file);
     return STATUS_OK;
 }

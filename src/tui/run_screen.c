@@ -57,7 +57,7 @@ static const tui_action actions[] = {
     {"knob-reset", {KEY_BACKSPACE, 127, KEY_DC}, "del", NULL, "the knob as the recipe has it", .handler = run_reset_knob, .argument = ARGUMENT_MAY, .asks = "KNOB",
      .complete = run_complete_knob},
     {"knobs-reset", {'Z'}, "Z", NULL, "all knobs as the recipe has them", .handler = run_reset_knobs},
-    {"save-recipe", {'w'}, "w", "save", "write a tuned material as a recipe", .handler = run_save_recipe, .argument = ARGUMENT_MAY, .asks = "[MATERIAL] FILE.lua",
+    {"save-recipe", {'w'}, "w", "save", "write a tuned material as a recipe", .handler = run_save_recipe, .argument = ARGUMENT_MAY, .asks = "[MATERIAL] FILE[.lua]",
      .complete = run_complete_material},
     {"run-to", {'r'}, "r", NULL, "go on to a frame and pause there", .handler = run_go_to, .argument = ARGUMENT_NUMBER, .asks = "frame", .paces = true},
     {"earlier", {'['}, "[", "past", "choose an earlier checkpoint on the line of frames", .handler = run_choose_earlier, .unlogged = true},

@@ -198,8 +198,8 @@ static void check_recipe(const char *scene_path, const char *variant, const knob
     session *s = begin(&o);
     CHECK(s && session_wait(s, -1));
     snprintf(path, sizeof path, "%s/saved.lua", folder);
-    CHECK(s && session_save_recipe(s, 0, path, &r) == STATUS_OK);
-    CHECK(s && session_save_recipe(s, 7, path, &r) == STATUS_INPUT && session_save_recipe(s, 0, "/nowhere/at/all.lua", &r) == STATUS_SYSTEM);
+    CHECK(s && session_save_recipe(s, 0, path, NULL, &r) == STATUS_OK);
+    CHECK(s && session_save_recipe(s, 7, path, NULL, &r) == STATUS_INPUT && session_save_recipe(s, 0, "/nowhere/at/all.lua", NULL, &r) == STATUS_SYSTEM);
 
     script *plain = NULL, *loaded = NULL;
     script_options options = script_options_default();

@@ -318,8 +318,8 @@ int session_checkpoints(session *s, int64_t *frames, int limit) {
     return 0;
 }
 
-status session_save_recipe(session *s, int material, const char *path, report *r) {
-    (void)s, (void)material;
+status session_save_recipe(session *s, int material, const char *path, char file[SESSION_RECIPE], report *r) {
+    (void)s, (void)material, (void)file;
     return report_input(r, path, 0, NULL, "a material", "a session that has none", NULL);
 }
 

@@ -176,6 +176,13 @@ def recipe(s):
     done = subprocess.run([bench.SUNDER, "check", os.path.join(s.folder, "mine.lua")], capture_output=True, text=True, check=False,
                           env={**os.environ, "SUNDER_RECIPES": s.folder})
     check("tuned" not in done.stderr, f"the recipe does not load: {done.stderr}")
+    s.do("run.save-recipe recipes/soft.flesh")
+    s.wait(r"expected a file name that ends in \.lua")
+    check(not os.listdir(os.path.join(s.folder, "recipes")), "a file that --recipe does not take")
+    s.do("run.save-recipe recipes/soft")
+    s.wait(r"is in recipes/soft\.lua; --recipe soft takes it")
+    check(os.path.exists(os.path.join(s.folder, "recipes", "soft.lua")), "the recipe without an ending")
+    check(re.search(r"run\.save-recipe \S+ recipes/soft\.lua$", s.commands(), re.M), f"the log: {s.commands()}")
 
 
 # ---- frames ----------------------------------------------------------------------------------------------------------

@@ -111,6 +111,9 @@ status ledger_tag(ledger *l, const char *id, const char *tag, bool on, report *r
 /* Adds a remark in free text. */
 status ledger_note(ledger *l, const char *id, const char *text, report *r);
 
+/* The verdict of a hard case that was refused before a run of it began, in the place of the one before; NULL forgets it. */
+status ledger_refusal(ledger *l, const char *name, const char *precision, const char *text, report *r);
+
 /* Forgets a run and all its rows; its folder is the caller's business. A run that is still being written is an input
  * error. */
 status ledger_remove(ledger *l, const char *id, report *r);

@@ -408,3 +408,21 @@ status ledger_note(ledger *l, const char *id, const char *text, report *r) {
     }
     return ledger_write_end(l, s, "write a note", r);
 }
+
+/* ---- what never began ---------------------------------------------------------------------------------------------- */
+
+status ledger_refusal(ledger *l, const char *name, const char *precision, const char *text, report *r) {
+    sqlite3_stmt *statement;
+    status s = ledger_write_begin(l, "write a refusal", r);
+    if (s) return s;
+    if (text) s = ledger_statement(l, "INSERT OR REPLACE INTO refusals VALUES (?1, ?2, ?3, ?4)", &statement, r);
+    else s = ledger_statement(l, "DELETE FROM refusals WHERE name = ?1 AND precision = ?2", &statement, r);
+    if (!s) {
+        bind_text(statement, 1, name);
+        bind_text(statement, 2, precision);
+        if (text) sqlite3_bind_double(statement, 3, wall_clock());
+        if (text) bind_text(statement, 4, text);
+        s = ledger_run_statement(l, statement, "write a refusal", r);
+    }
+    return ledger_write_end(l, s, "write a refusal", r);
+}

@@ -108,10 +108,10 @@ typedef struct stress_request {
 } stress_request;
 
 /* Makes and judges all runs that are waiting, so many at a time; one that another is compared with goes first. Each is tagged
- * stress:CASE and its verdict noted as an event. STATUS_INTERRUPTED after SIGINT or SIGTERM. */
+ * stress:CASE and its verdict noted as an event, or as a refusal where no run began. STATUS_INTERRUPTED after SIGINT or SIGTERM. */
 status stress_work(stress_request *q, report *r);
 
-/* Takes over the verdict that the ledger has of the newest run of each. */
+/* Takes over the verdict that the ledger has of the newest run of each, or of its refusal. */
 status stress_recall(ledger *l, const stress_suite *suite, stress_run *runs, int count, report *r);
 
 #endif

@@ -62,14 +62,16 @@ static void read_output(worker *child, stress_run *run) {
 /* ---- the ledger -------------------------------------------------------------------------------------------------- */
 
 static status note(ledger *l, const stress_case *c, const stress_run *run, report *r) {
-    char tag[STRESS_NAME + 8], text[STRESS_TEXT + 32];
-    if (!run->id[0]) return STATUS_OK;
+    char tag[STRESS_NAME + 8], text[STRESS_TEXT + 32], precision[8];
     snprintf(tag, sizeof tag, "stress:%s", c->name);
     snprintf(text, sizeof text, "%s: %s", stress_verdict_word(run->verdict), run->text);
+    snprintf(precision, sizeof precision, "f%d", run->precision);
+    if (!run->id[0]) return ledger_refusal(l, c->name, precision, text, r);
     status code = ledger_batch_begin(l, r);
     if (code != STATUS_OK) return code;
     code = ledger_tag(l, run->id, tag, true, r);
     if (code == STATUS_OK) code = ledger_event(l, run->id, 0, "verdict", text, r);
+    if (code == STATUS_OK) code = ledger_refusal(l, c->name, precision, NULL, r);
     return ledger_batch_end(l, code, r);
 }
 
@@ -187,14 +189,17 @@ static status take_verdict(void *context, const ledger_cell *cells, int count, r
 status stress_recall(ledger *l, const stress_suite *suite, stress_run *runs, int count, report *r) {
     static const char sql[] = "SELECT runs.id, runs.output, events.text, runs.wall_seconds FROM runs JOIN tags USING (run) JOIN events USING (run) "
                               "WHERE tag = :tag AND precision = :precision AND (:simd = '' OR simd = :simd) AND kind = 'verdict' ORDER BY run DESC LIMIT 1";
+    static const char refused[] = "SELECT NULL, NULL, text, 0 FROM refusals WHERE name = :name AND precision = :precision";
     status code = STATUS_OK;
     for (int i = 0; i < count && code == STATUS_OK; i++) {
-        char tag[STRESS_NAME + 16], precision[24], simd[32];
-        const char *const arguments[] = {tag, precision, simd};
+        char tag[STRESS_NAME + 16], name[STRESS_NAME + 8], precision[24], simd[32];
+        const char *const arguments[] = {tag, precision, simd}, *const own[] = {name, precision};
         snprintf(tag, sizeof tag, "tag=stress:%s", suite->cases[runs[i].which].name);
+        snprintf(name, sizeof name, "name=%s", suite->cases[runs[i].which].name);
         snprintf(precision, sizeof precision, "precision=f%d", runs[i].precision);
         snprintf(simd, sizeof simd, "simd=%s", runs[i].simd);
         code = ledger_each_row(l, sql, arguments, 3, take_verdict, &runs[i], r);
+        if (code == STATUS_OK) code = ledger_each_row(l, refused, own, 2, take_verdict, &runs[i], r);
     }
     return code;
 }

@@ -61,6 +61,24 @@ def test_expectations_that_hold_and_not():
         check(code == 0 and "holds" in out and "known limit" in out and len(box.rows("SELECT run FROM runs")) == 10, f"the last verdicts, and nothing run: {out}")
 
 
+def test_refused_before_a_run_begins():
+    """It has no run, but a verdict that is kept until a run of it begins."""
+    with Cases() as box:
+        fits, misses = ("domain = {{ min = {{ {0}, {0}, {0} }}, max = {{ 1, 1, 1 }} }},".format(low) for low in (-1, 0))
+        box.case("outside", "{ stop = 'outside' }", keys=misses)
+        code, out, _ = box.stress("outside", "--json")
+        run = json.loads(out)["runs"][0]
+        check(code == 0 and run["verdict"] == "stops" and run["run_id"] is None, f"stops without a run: {run}")
+        code, out, _ = box.stress("--last", "--json", "outside")
+        last = json.loads(out)["runs"][0]
+        check(code == 0 and last["verdict"] == "stops" and last["text"] == run["text"], f"its verdict is kept: {last}")
+        check(box.stress("--last", "--precision", "f64", "outside")[1].startswith("1/1  not run"), "of that precision alone")
+        check(box.stress("outside")[0] == 0 and box.rows("SELECT name, precision FROM refusals") == [("outside", "f32")], "the newest alone")
+        box.case("outside", "{ speed_max = 5 }", keys=fits)
+        box.stress("outside")
+        check("  holds  " in box.stress("--last", "outside")[1] and not box.rows("SELECT 1 FROM refusals"), "a run takes its place")
+
+
 def test_likeness():
     with Cases() as box:
         params = ", variant = s.choice { 'here', 'there', 'elsewhere' }"

@@ -14,11 +14,11 @@
 static void a_new_ledger_is_made_with_its_folders(void) {
     ledger_close(open_ledger("new/deep/ledger.db"));
     CHECK(sql_is("new/deep/ledger.db", "PRAGMA application_id", "1936614514"));
-    CHECK(sql_is("new/deep/ledger.db", "PRAGMA user_version", "3"));
+    CHECK(sql_is("new/deep/ledger.db", "PRAGMA user_version", "4"));
     CHECK(sql_is("new/deep/ledger.db", "PRAGMA journal_mode", "wal"));
-    CHECK(sql_is("new/deep/ledger.db", "SELECT group_concat(name) FROM migrations", "001_initial,002_views,003_knob_turns"));
+    CHECK(sql_is("new/deep/ledger.db", "SELECT group_concat(name) FROM migrations", "001_initial,002_views,003_knob_turns,004_refusals"));
     ledger_close(open_ledger("new/deep/ledger.db"));
-    CHECK(sql_is("new/deep/ledger.db", "SELECT count(*) FROM migrations", "3"));
+    CHECK(sql_is("new/deep/ledger.db", "SELECT count(*) FROM migrations", "4"));
     CHECK(!exists(in_scratch("new/deep/ledger.db-wal"))); /* the last to close has put everything in one file */
 }
 
@@ -44,7 +44,7 @@ static void what_is_no_ledger_is_refused(void) {
           sql_is("other.db", "PRAGMA journal_mode", "delete"));
     ledger_close(open_ledger("future.db"));
     sql_do("future.db", "PRAGMA user_version = 99");
-    CHECK(try_open("future.db", &r) == STATUS_INPUT && strstr(r.found, "schema 99") && strstr(r.expected, "schema 3"));
+    CHECK(try_open("future.db", &r) == STATUS_INPUT && strstr(r.found, "schema 99") && strstr(r.expected, "schema 4"));
     CHECK(sql_is("future.db", "PRAGMA user_version", "99"));
     CHECK(try_open("", &r) == STATUS_INPUT && strstr(r.found, "folder"));
     CHECK(try_open("garbage.db/ledger.db", &r) != STATUS_OK);
@@ -86,7 +86,7 @@ static void an_older_schema_is_brought_up(void) {
         "version, effects, threads, particles, frames_wanted, seed, host, boot, pid_space, pid, pid_started) VALUES "
         "('20250101-000000-aaaa', 'done', 0, '', 'Old', '', '', '', '', '', '', '', 1, 1, 1, 1, 'h', '', '', 1, 1)");
     ledger_close(open_ledger("old.db"));
-    CHECK(sql_is("old.db", "PRAGMA user_version", "3"));
+    CHECK(sql_is("old.db", "PRAGMA user_version", "4"));
     CHECK(sql_is("old.db", "SELECT title FROM runs_view", "Old"));
 }
 
@@ -450,7 +450,7 @@ static void many_may_open_a_new_ledger_together(void) {
         snprintf(path, sizeof path, "%s/race%d.db", scratch, round);
         CHECK(at_once(OPENERS, open_and_close, path) == 0);
     }
-    CHECK(sql_is("race0.db", "SELECT count(*) FROM migrations", "3"));
+    CHECK(sql_is("race0.db", "SELECT count(*) FROM migrations", "4"));
 }
 
 /* ---- faults ------------------------------------------------------------------------------------------------------ */

@@ -309,7 +309,7 @@ static void queries_only_read(void) {
         CHECK(p.s == STATUS_INPUT);
         free(p.text);
     }
-    CHECK(sql_is("sql.db", "SELECT count(*) FROM runs", "3") && sql_is("sql.db", "PRAGMA user_version", "3"));
+    CHECK(sql_is("sql.db", "SELECT count(*) FROM runs", "3") && sql_is("sql.db", "PRAGMA user_version", "4"));
     PRINT(p,
           ledger_print_sql(l, out, false, "SELECT id, particles, NULL AS none FROM runs ORDER BY run; ", NULL, 0, &r));
     CHECK(p.s == STATUS_OK && has(p.text, "particles") && has(p.text, "none") && has(p.text, "50000") &&

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { DETAIL_ROWS = 6, WIDE = 64, NAME_NARROW = 15, NAME_WIDE = 20, TWIN_NAME = 14, VALUE = 11 };
+enum { DETAIL_ROWS = 6, WIDE = 64, NAME_NARROW = 15, NAME_WIDE = 20, VALUE = 11, INDENT = 2 };
 
 static bool changed(const knob *k) {
     return memcmp(k->value, k->start, sizeof k->value) != 0;
@@ -40,61 +40,35 @@ static void draw_side(tui_theme *theme, tui_area area, int row, int name_width, 
     draw_right(theme, area, row, name_width + 1 + VALUE, number, value);
 }
 
-/* The values of twins on a narrow row: whole where they fit beside a few letters of the second name; else the one that is not being turned is
- * rounded. */
-static void show_twins(const knob *const sides[2], int chosen, int width, char values[2][KNOB_TEXT]) {
-    enum { FRAME = 7, LETTERS = 6 };
-    int names = (int)strlen(sides[0]->key), second = (int)strlen(sides[1]->key);
-    names = (names < TWIN_NAME ? names : TWIN_NAME) + (second < LETTERS ? second : LETTERS);
-    for (int i = 0; i < 2; i++) knob_show(sides[i], sides[i]->value, values[i]);
-    for (int k = 0; k < 2 && FRAME + names + draw_width(values[0]) + draw_width(values[1]) > width; k++) {
-        int side = chosen == 0 ? 1 - k : k;
-        if (k == 1 && chosen >= 0) return;
-        snprintf(values[side], KNOB_TEXT, "%.3g", sides[side]->value[0]);
-    }
+static int side_width(int width) {
+    return (width >= WIDE ? NAME_WIDE : NAME_NARROW) + VALUE + 2;
 }
 
-/* "sigma_c 3.196e+04 = break_stretch 0.2" where two columns of each do not fit; the second name gives way. */
-static void draw_twins(tui_theme *theme, tui_area area, int row, const knob *k, const knob *twin, int chosen) {
-    const knob *sides[2] = {k, twin};
-    char values[2][KNOB_TEXT], name[64];
-    show_twins(sides, chosen, area.width, values);
-    int end = area.width - draw_width(values[1]) - 1, column = 1;
-    for (int i = 0; i < 2; i++) {
-        tui_style style = i == chosen ? STYLE_HEAD : sides[i]->derived || !sides[i]->live ? STYLE_DIM : STYLE_TEXT;
-        if (i == chosen) draw_text(theme, area, row, column - 1, STYLE_HEAD, "▸");
-        snprintf(name, sizeof name, "%.*s", i == 0 ? TWIN_NAME : end > column ? end - column : 0, sides[i]->key);
-        column = draw_text(theme, area, row, column, style, name) + 1;
-        tui_style number = changed(sides[i]) ? STYLE_WARN : sides[i]->derived ? STYLE_DIM : STYLE_STRONG;
-        if (i == 1) {
-            draw_right(theme, area, row, area.width, number, values[i]);
-        } else {
-            column = draw_text(theme, area, row, column, number, values[i]) + 1;
-            column = draw_text(theme, area, row, column, STYLE_DIM, "=") + 1;
-        }
-    }
+/* Twins stand side by side where there is room, else the second below the first. */
+static bool side_by_side(int width) {
+    return width >= 2 * side_width(width) + 2;
 }
 
 static void draw_knob(const knob_panel *panel, tui_theme *theme, tui_area area, int row, int index) {
     const knob_row *r = &panel->rows[index];
-    bool here = index == panel->cursor;
-    int name_width = area.width >= WIDE ? NAME_WIDE : NAME_NARROW, used = name_width + VALUE + 2;
+    bool here = index == panel->cursor, beside = r->twin >= 0 && side_by_side(area.width);
+    int used = side_width(area.width), name_width = used - VALUE - 2;
     const knob *k = &panel->list[r->knob];
     int chosen = !here ? -1 : panel->on_twin ? 1 : 0;
-    if (r->twin < 0) {
-        draw_side(theme, area, row, name_width, k, here);
-        if (k->components == 1) draw_slider(theme, area, row, used, area.width - used, k, 0);
-        return;
-    }
-    const knob *twin = &panel->list[r->twin];
-    if (area.width < 2 * used + 2) {
-        draw_twins(theme, area, row, k, twin, chosen);
-        return;
-    }
-    tui_area right = {area.y, area.x + used + 2, area.height, area.width - used - 2};
     draw_side(theme, area, row, name_width, k, chosen == 0);
-    draw_text(theme, area, row, used, STYLE_DIM, "=");
-    draw_side(theme, right, row, name_width, twin, chosen == 1);
+    if (k->components == 1 && !beside) draw_slider(theme, area, row, used, area.width - used, k, 0);
+    if (r->twin < 0) return;
+    const knob *twin = &panel->list[r->twin];
+    if (beside) {
+        tui_area right = {area.y, area.x + used + 2, area.height, area.width - used - 2};
+        draw_text(theme, area, row, used, STYLE_DIM, "=");
+        draw_side(theme, right, row, name_width, twin, chosen == 1);
+        return;
+    }
+    tui_area below = {area.y, area.x + INDENT, area.height, area.width - INDENT};
+    draw_text(theme, area, row + 1, 1, STYLE_DIM, "=");
+    draw_side(theme, below, row + 1, name_width - INDENT, twin, chosen == 1);
+    draw_slider(theme, area, row + 1, used, area.width - used, twin, 0);
 }
 
 /* ---- the current one --------------------------------------------------------------------------------------------- */
@@ -137,23 +111,34 @@ static void draw_detail(const knob_panel *panel, tui_theme *theme, tui_area area
     }
 }
 
+/* The lines that rows take, from one to before another. */
+static int count_lines(const knob_panel *panel, int from, int to, int width) {
+    int lines = to - from;
+    for (int i = from; i < to; i++) lines += !panel->rows[i].heading && panel->rows[i].twin >= 0 && !side_by_side(width);
+    return lines;
+}
+
+/* Moves the first row in view so that the cursor's is in view, with the group's heading above its first row, and none is left empty. */
+static void scroll_to_cursor(knob_panel *panel, int lines, int width) {
+    int wanted = panel->cursor > 0 && panel->rows[panel->cursor - 1].heading ? panel->cursor - 1 : panel->cursor;
+    if (wanted < panel->top) panel->top = wanted;
+    if (panel->top > panel->row_count - 1) panel->top = panel->row_count - 1;
+    while (panel->top < panel->cursor && count_lines(panel, panel->top, panel->cursor + 1, width) > lines) panel->top++;
+    while (panel->top > 0 && count_lines(panel, panel->top - 1, panel->row_count, width) <= lines) panel->top--;
+}
+
 void knob_panel_draw(knob_panel *panel, tui_theme *theme, tui_area area) {
     if (panel->row_count == 0) {
         draw_text(theme, area, 0, 0, STYLE_DIM, "no knobs yet");
         return;
     }
     int detail = area.height >= 14 ? DETAIL_ROWS + (area.height >= 30) : area.height >= 8 ? 3 : 0;
-    int rows = area.height - detail;
-    /* The group's heading stays in view above its first row. */
-    int wanted = panel->cursor > 0 && panel->rows[panel->cursor - 1].heading ? panel->cursor - 1 : panel->cursor;
-    if (wanted < panel->top) panel->top = wanted;
-    if (panel->cursor >= panel->top + rows) panel->top = panel->cursor - rows + 1;
-    if (panel->top > panel->row_count - rows) panel->top = panel->row_count > rows ? panel->row_count - rows : 0;
-    tui_area list = {area.y, area.x, rows, area.width};
-    for (int i = 0; i < rows && panel->top + i < panel->row_count; i++) {
-        const knob_row *row = &panel->rows[panel->top + i];
-        if (row->heading) draw_group(theme, list, i, &panel->list[row->knob]);
-        else draw_knob(panel, theme, list, i, panel->top + i);
+    tui_area list = {area.y, area.x, area.height - detail, area.width};
+    scroll_to_cursor(panel, list.height, list.width);
+    for (int i = panel->top, line = 0; i < panel->row_count && line < list.height; line += count_lines(panel, i, i + 1, list.width), i++) {
+        const knob_row *row = &panel->rows[i];
+        if (row->heading) draw_group(theme, list, line, &panel->list[row->knob]);
+        else draw_knob(panel, theme, list, line, i);
     }
-    draw_detail(panel, theme, (tui_area){area.y + rows, area.x, detail, area.width});
+    draw_detail(panel, theme, (tui_area){area.y + list.height, area.x, detail, area.width});
 }

@@ -12,13 +12,21 @@ typedef struct theme_slot {
     int fore, back, pair; /* pair 0: free */
 } theme_slot;
 
-/* What a style is made of at each depth of colour; −1 is the terminal's own colour. */
+/* What a style is made of at each depth of colour; −1 is the ground's. */
 typedef struct style_row {
     attr_t attributes;
     short fore256, back256;
     short fore8, back8;
     attr_t mono;
 } style_row;
+
+/* What is behind a theme's text, and what its text is without a colour of its own. */
+typedef struct ground_row {
+    short fore256, back256;
+    short fore8, back8;
+} ground_row;
+
+static const ground_row dark_ground = {252, 234, 7, 0}, light_ground = {235, 231, 0, 7};
 
 typedef struct theme_row {
     const char *name;
@@ -113,12 +121,14 @@ static theme_slot *find_slot(const tui_theme *theme, int fore, int back) {
 }
 
 tui_ink theme_pair(tui_theme *theme, int foreground, int background) {
+    if (foreground < 0) foreground = theme->ground_fore;
+    if (background < 0) background = theme->ground_back;
     if (theme->colours == 0 || (foreground < 0 && background < 0)) return (tui_ink){A_NORMAL, 0};
     theme_slot *slot = find_slot(theme, foreground, background);
     if (slot->pair == 0) {
         /* Few terminals run out; those keep the foreground and give up the background. */
         if (theme->pair_count + 1 >= theme->pair_limit)
-            return background >= 0 ? theme_pair(theme, foreground, -1) : (tui_ink){A_NORMAL, 0};
+            return background != theme->ground_back ? theme_pair(theme, foreground, -1) : (tui_ink){A_NORMAL, 0};
         *slot = (theme_slot){foreground, background, ++theme->pair_count};
         init_extended_pair(slot->pair, foreground, background);
     }
@@ -184,12 +194,27 @@ static tui_ink style_ink(tui_theme *theme, const style_row *row) {
     return ink;
 }
 
+/* The terminal's own ground, unless the theme is made for the other one: dark letters are not read on black. */
+static void paint_ground(tui_theme *theme) {
+    bool many = theme->colours >= 256, own = theme->colours > 0 && (theme->kind == TUI_LIGHT) != (guess_kind() == TUI_LIGHT);
+    const ground_row *g = theme->kind == TUI_LIGHT ? &light_ground : &dark_ground;
+    int fore = many ? g->fore256 : g->fore8, back = many ? g->back256 : g->back8;
+    bool direct = theme->colours == TUI_TRUE_COLOUR;
+    theme->ground_fore = !own ? -1 : direct ? direct_colour(rgb_of_256(fore)) : fore;
+    theme->ground_back = !own ? -1 : direct ? direct_colour(rgb_of_256(back)) : back;
+    tui_ink ink = theme_pair(theme, -1, -1);
+    cchar_t blank;
+    setcchar(&blank, L" ", ink.attributes, 0, &ink.pair);
+    bkgrndset(&blank);
+}
+
 void theme_choose(tui_theme *theme, tui_theme_kind kind) {
     if (kind == TUI_THEME_AUTO) kind = guess_kind();
     theme->kind = kind;
     theme->palette = themes[kind].palette;
     theme->pair_count = 0;
     memset(theme->slots, 0, SLOTS * sizeof *theme->slots);
+    paint_ground(theme);
     for (int i = 0; i < STYLE_COUNT; i++) theme->styles[i] = style_ink(theme, &themes[kind].styles[i]);
 }
 

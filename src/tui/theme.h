@@ -37,6 +37,7 @@ typedef struct tui_theme {
     int pair_count; /* handed out so far; pair 0 is the terminal's own */
     int pair_limit;
     struct theme_slot *slots; /* a table of pairs by their colours */
+    int ground_fore, ground_back; /* what −1 stands for in a pair: −1 where the terminal's own colours do */
     int overrides[STYLE_COUNT]; /* the user's own colours + 1: 0–255, or 0x1000000 + rgb; 0: the theme's */
     tui_ink styles[STYLE_COUNT];
 } tui_theme;
@@ -54,13 +55,14 @@ const char *theme_name(tui_theme_kind kind);
 /* Gives a style ("dim", "bar-good") a colour of the user's own: 0–255, or 0x1000000 + rgb. False, with the nearest name (or NULL): no such style. */
 bool theme_override(tui_theme *theme, const char *style, int colour, const char **nearest);
 
-/* The ink for a colour pair in terminal colours (with true colour: 0xrrggbb); −1 is the terminal's default. */
+/* The ink for a colour pair in terminal colours (with true colour: 0xrrggbb); −1 is the ground's: the terminal's default, or the
+ * theme's own where the terminal is dark and the theme light, or the other way round. */
 tui_ink theme_pair(tui_theme *theme, int foreground, int background);
 
 /* The terminal colour of `value` in the palette under `light`, both in [0,1]; −1 without colours. */
 int theme_colour(const tui_theme *theme, float value, float light);
 
-/* The ink of a value on the terminal's own background. Without colours, upper halves are bold. */
+/* The ink of a value on the ground. Without colours, upper halves are bold. */
 tui_ink theme_value(tui_theme *theme, float value);
 
 #endif

@@ -167,6 +167,18 @@ def test_light_background_is_noticed():
     check(bars[0] != bars[1], "COLORFGBG changes nothing")
 
 
+def test_a_theme_is_read_on_any_ground():
+    """The light theme paints its own ground on a dark terminal; the dark one on a light one."""
+    for hint, keys, ground in (("15;0", ["t"], "231"), ("0;15", [], None), ("0;15", ["t", "t"], "234"), ("15;0", [], None)):
+        with demo(LONG, variables=f"export COLORFGBG='{hint}';") as s:
+            s.running()
+            if keys:
+                s.keys(*keys)
+                s.wait(r"Theme: (light|dark)")
+            found = set(re.findall(r"48;5;(231|234)m", s.text(True)))
+            check(found == ({ground} if ground else set()), f"the ground on a terminal of {hint} after {keys}: {found}")
+
+
 def test_dumb_and_unknown_terminals_are_refused():
     for term, why in (("dumb", 'TERM is "dumb"'), ("nosuchterm", "no terminfo entry"), ("''", "TERM is not set")):
         with demo(LONG, term=term) as s:

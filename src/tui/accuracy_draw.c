@@ -193,6 +193,7 @@ static int draw_foot(tui_app *app, const accuracy_view *s, tui_area area, int ro
 
 void accuracy_view_draw(tui_app *app, void *state, tui_area area) {
     accuracy_view *s = state;
+    area = draw_inset(area);
     if (s->level_count == 0) {
         draw_hint(app, s, area);
         return;

@@ -61,6 +61,10 @@ int draw_width(const char *text) {
     return width;
 }
 
+tui_area draw_inset(tui_area area) {
+    return (tui_area){area.y, area.x + 1, area.height, area.width - 1};
+}
+
 void draw_glyph(tui_area area, int row, int column, tui_ink ink, uint32_t glyph) {
     if (row < 0 || row >= area.height || column < 0 || column >= area.width) return;
     wchar_t text[2] = {(wchar_t)glyph, 0};

@@ -12,6 +12,9 @@ typedef struct tui_area {
     int y, x, height, width;
 } tui_area;
 
+/* What is left of an area without its first column, which screens leave free. */
+tui_area draw_inset(tui_area area);
+
 /* Writes UTF-8 text at (row, column) of the area with a style; returns the column after it. What does not fit is cut.
  */
 int draw_text(const tui_theme *theme, tui_area area, int row, int column, tui_style style, const char *text);

@@ -153,9 +153,9 @@ void runs_draw(tui_app *app, void *state, tui_area area) {
         return;
     }
     switch (s->page) {
-    case RUNS_TABLE: draw_table(app, s, area); break;
-    case RUNS_DETAIL: runs_draw_detail(app, s, area); break;
-    case RUNS_PLOT: runs_draw_plot(app, s, area); break;
+    case RUNS_TABLE: draw_table(app, s, draw_inset(area)); break;
+    case RUNS_DETAIL: runs_draw_detail(app, s, draw_inset(area)); break;
+    case RUNS_PLOT: runs_draw_plot(app, s, draw_inset(area)); break;
     case RUNS_PLAYER: runs_draw_player(app, s, area); break;
     }
 }

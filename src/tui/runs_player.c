@@ -173,7 +173,7 @@ RUNS_LOOK(reset, "reset")
 
 void runs_draw_player(tui_app *app, runs_state *s, tui_area area) {
     const frame_page *page = page_of(s);
-    int column = draw_text(&app->theme, area, 0, 0, STYLE_STRONG, s->shown[0]);
+    int column = draw_text(&app->theme, area, 0, 1, STYLE_STRONG, s->shown[0]);
     if (!page || !page->has_frame) {
         bool wrong = page && page->problem[0];
         draw_paragraph(&app->theme, (tui_area){area.y + 1, area.x + 1, area.height - 1, area.width - 2}, area.height / 2 - 1, 3, wrong ? STYLE_BAD : STYLE_DIM,

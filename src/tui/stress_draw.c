@@ -80,6 +80,7 @@ static void draw_detail(tui_app *app, const stresses *s, tui_area area) {
 
 void stresses_draw(tui_app *app, void *state, tui_area area) {
     stresses *s = state;
+    area = draw_inset(area);
     draw_head(app, s, area);
     if (area.width >= WIDE) {
         draw_list(app, s, (tui_area){area.y + 1, area.x, area.height - 1, LIST_WIDTH});

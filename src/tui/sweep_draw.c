@@ -127,6 +127,7 @@ static void draw_foot(tui_app *app, const sweep_state *s, tui_area area) {
 
 void sweep_draw(tui_app *app, void *state, tui_area area) {
     sweep_state *s = state;
+    area = draw_inset(area);
     if (!s->loaded) {
         draw_list(app, s, area);
         return;

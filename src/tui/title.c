@@ -43,7 +43,7 @@ static void choose_tabs(const tui_app *app, int room, int *first, int *last) {
 
 /* The screens' names, the one in view marked. */
 static int draw_screens(const tui_app *app, tui_area area, int column) {
-    enum { TITLE = 16 };
+    enum { TITLE = 17 }; /* a gap, "Tube pull · full" */
     int count, first, last;
     const tui_screen *const *list = tui_screens(&count);
     choose_tabs(app, area.width - column - TITLE, &first, &last);

@@ -36,7 +36,7 @@ def runs(s):
 
 def order(s):
     """Ids in the order of the table."""
-    return re.findall(r"^..(\d{8}-\d{6}-[0-9a-f]{4})", s.text(), re.M)
+    return re.findall(r"^ ..(\d{8}-\d{6}-[0-9a-f]{4})", s.text(), re.M)
 
 
 @covers("runs.filter", "runs.all", "runs.sort", "runs.columns", "runs.drop-column", "runs.left", "runs.right", "runs.up", "runs.down", "runs.page-up", "runs.page-down", start=None, width=200)
@@ -61,7 +61,7 @@ def table_is_filtered_and_sorted(s):
     s.keys("A")
     s.wait(r"3 of 3 runs")
     s.do("runs.columns tags")  # taken away
-    s.wait(r"^  id .*tags", absent=True)
+    s.wait(r"^ +id .*tags", absent=True)
     for _ in range(12):
         s.keys("Left")
     s.keys("s")
@@ -69,11 +69,11 @@ def table_is_filtered_and_sorted(s):
     s.keys("s")
     s.wait(r"id ▼")
     s.keys("Right", "x")
-    s.wait(r"^  id .*status", absent=True)
+    s.wait(r"^ +id .*status", absent=True)
     for key, row in (("NPage", 2), ("PPage", 0), ("Down", 1), ("Down", 2), ("Up", 1)):
         s.keys(key)
         s.do("runs.mark")
-        s.wait(rf"^● {order(s)[row]}")
+        s.wait(rf"^ ● {order(s)[row]}")
         s.do("runs.unmark")
         s.wait(r"●", absent=True)
         if row < 2:
@@ -89,9 +89,9 @@ def marked_runs_are_compared(s):
     s.wait(r"2 marked")
     s.keys("d")
     s.wait(r"What differs between 2 runs")
-    line = s.wait(r"^  \S*eta +(\S+) +(\S+)$")
+    line = s.wait(r"^ +\S*eta +(\S+) +(\S+)$")
     check({line.group(1), line.group(2)} == {"0.4", "0.2"}, f"their values: {line.group(0)}")
-    check(not re.search(r"^  \S*pull ", s.text(), re.M), "what is the same is not there")
+    check(not re.search(r"^ +\S*pull ", s.text(), re.M), "what is the same is not there")
     s.keys("BSpace")
     s.wait(r"3 of 3 runs")
     s.keys("b")
@@ -104,7 +104,7 @@ def marked_runs_are_compared(s):
     s.keys("b")
     s.wait(r"Mark two runs")
     s.keys("<", "i")
-    s.wait(r"^  \S*pull +0\.6")
+    s.wait(r"^ +\S*pull +0\.6")
     s.keys(">")
     s.wait(r"first_crack|speed_max")
     s.keys("Escape")
@@ -283,12 +283,12 @@ def a_sweep_fills_its_grid(s):
     check(len(values) == 12, f"a measure of each run: {values}")
     s.wait(rf"\s{values[0]:.3g}".replace(".", r"\."))
     s.keys("Right", "Down")
-    s.wait(r"^9/12 \d{8}-.* damage_max = ")
+    s.wait(r"^ 9/12 \d{8}-.* damage_max = ")
     s.keys("n")
-    s.wait(r"^10/12 ")
+    s.wait(r"^ 10/12 ")
     s.wait(r"pull .*held at 0\.8")
     s.keys("n", "Left", "Up")
-    s.wait(r"^1/12 ")
+    s.wait(r"^ 1/12 ")
     s.keys("a")
     s.wait(r"break_stretch down, pull across")
     s.keys("Enter")

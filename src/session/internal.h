@@ -113,7 +113,6 @@ struct session {
     json_writer summary;
 };
 
-double session_clock(void);
 /* Its folder is written no more. */
 void session_release_folder(const session *s);
 

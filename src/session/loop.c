@@ -1,16 +1,11 @@
 /* The loop of a run: a frame, its measures, its file, its ledger row. */
+#include "base/clock.h"
 #include "session/internal.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
-
-double session_clock(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void show_event(session *s, int64_t frame, const char *kind, const char *text) {
     pthread_mutex_lock(&s->lock);
@@ -59,7 +54,7 @@ void session_tolerate(session *s, status code, const report *r) {
 static void take_sample(session *s, double seconds) {
     const solid_measures *m = &s->measures.solid;
     s->sample = (session_sample){.frame = s->measures.frame, .step = s->measures.steps, .time = s->measures.time, .seconds = seconds,
-                                 .wall = session_clock() - s->wall_start, .kinetic = m->kinetic,
+                                 .wall = clock_seconds() - s->wall_start, .kinetic = m->kinetic,
                                  .elastic = m->elastic, .fibre = m->fibre, .work = m->grip_work, .damage_mean = m->damage_mean,
                                  .damage_max = m->damage_max, .broken_fraction = m->broken_fraction, .dt = s->measures.dt_min};
     memcpy(s->sample.histogram, m->histogram, sizeof s->sample.histogram);
@@ -173,16 +168,16 @@ static status run_frames(session *s, report *r) {
         }
         code = turns_act(s, r);
         if (code != STATUS_OK) return code;
-        double start = session_clock();
+        double start = clock_seconds();
         code = simulation_advance(s->simulation, &s->abandon, r);
-        double seconds = session_clock() - start;
+        double seconds = clock_seconds() - start;
         s->step_wall += seconds;
         if (s->last_frame_wall == 0) s->last_frame_wall = seconds; /* the first frame's, until its writing is known too */
         if (code == STATUS_INTERRUPTED)
             s->unfinished = (session_unfinished){.steps = simulation_steps(s->simulation) - s->measures.steps,
                                                  .time = simulation_time(s->simulation) - s->measures.time, .seconds = seconds};
         if (code == STATUS_OK) code = settle_frame(s, seconds, true, r);
-        s->last_frame_wall = session_clock() - start;
+        s->last_frame_wall = clock_seconds() - start;
     }
     return code;
 }
@@ -195,7 +190,7 @@ static void finish(session *s) {
     status code = summary_write(s, &r);
     if (code != STATUS_OK && s->outcome == STATUS_OK) s->outcome = code, s->report = r;
     code = ledger_finish(s->ledger, s->id, word, simulation_frame(s->simulation), simulation_steps(s->simulation),
-                         session_clock() - s->wall_start, message[0] ? message : NULL, s->summary.text, &r);
+                         clock_seconds() - s->wall_start, message[0] ? message : NULL, s->summary.text, &r);
     if (code != STATUS_OK && s->outcome == STATUS_OK) s->outcome = code, s->report = r;
 }
 

@@ -1,4 +1,5 @@
 /* What screens see: a snapshot that the loop refreshes and anyone may copy. */
+#include "base/clock.h"
 #include "base/memory.h"
 #include "session/internal.h"
 
@@ -34,7 +35,7 @@ static void refresh(session *s, session_state state) {
     p->version++;
     p->state = state;
     snprintf(p->message, sizeof p->message, "%s", s->warning);
-    p->wall = session_clock() - s->wall_start;
+    p->wall = clock_seconds() - s->wall_start;
     p->pause_at = atomic_load(&s->pause_at);
     p->knob_version = s->knobs.version;
 }

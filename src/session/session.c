@@ -1,5 +1,6 @@
 #include "session/session.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "session/internal.h"
 
@@ -257,7 +258,7 @@ status session_start(const session_options *options, session **out, script_repor
         return report_set(&reports->items[0], STATUS_SYSTEM, "out of memory for the session");
     }
     s->options = *options;
-    s->wall_start = session_clock();
+    s->wall_start = clock_seconds();
     pthread_mutex_init(&s->lock, NULL);
     pthread_mutex_init(&s->knobs.lock, NULL);
     pthread_mutex_init(&s->ledger_lock, NULL);
@@ -312,8 +313,8 @@ void session_abandon(session *s) {
 }
 
 bool session_wait(session *s, double seconds) {
-    double end = session_clock() + seconds;
-    while (!atomic_load(&s->ended) && (seconds < 0 || session_clock() < end))
+    double end = clock_seconds() + seconds;
+    while (!atomic_load(&s->ended) && (seconds < 0 || clock_seconds() < end))
         nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
     return atomic_load(&s->ended);
 }

@@ -1,4 +1,5 @@
 /* The object that `sunder run --json` ends with, and result.json. */
+#include "base/clock.h"
 #include "session/internal.h"
 
 #include <stdio.h>
@@ -39,7 +40,7 @@ static void write_run(session *s, json_writer *w) {
     json_member_integer(w, "frames", simulation_frame(s->simulation));
     json_member_integer(w, "steps", simulation_steps(s->simulation));
     json_member_integer(w, "particles", plan->particles);
-    json_member_number(w, "wall_s", session_clock() - s->wall_start);
+    json_member_number(w, "wall_s", clock_seconds() - s->wall_start);
     json_member_number(w, "step_wall_s", s->step_wall);
     json_member_number(w, "particle_steps_per_s", s->step_wall > 0 ? (double)plan->particles * steps / s->step_wall : 0);
     json_member_integer(w, "threads", plan->threads);

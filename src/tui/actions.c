@@ -1,5 +1,6 @@
 #include "tui/actions.h"
 
+#include "base/clock.h"
 #include "base/names.h"
 #include "script/library.h"
 #include "tui/shell.h"
@@ -198,8 +199,8 @@ static bool complete_start(tui_app *app, const char *text, int index, char out[A
     static library_scene list[MOST]; /* kept for a moment: all candidates are asked for at every key */
     static double looked;
     static int count;
-    if (looked == 0 || app_clock() - looked > 2) count = library_scenes(list, MOST);
-    looked = app_clock();
+    if (looked == 0 || clock_seconds() - looked > 2) count = library_scenes(list, MOST);
+    looked = clock_seconds();
     for (int i = 0; i < count; i++) {
         bool begins = strncmp(list[i].name, text, strlen(text)) == 0 || strncmp(list[i].path, text, strlen(text)) == 0;
         if (!begins || index-- > 0) continue;

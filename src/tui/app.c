@@ -1,6 +1,7 @@
 /* The app's own functions: notices, questions, the run in view, screens. */
 #include "tui/app.h"
 
+#include "base/clock.h"
 #include "store/ledger.h"
 #include "tui/actions.h"
 #include "tui/shell.h"
@@ -8,16 +9,9 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 static const double notice_time = 4; /* s */
-
-double app_clock(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 status app_open_ledger(const tui_app *app, ledger **out, report *r) {
     char path[TUI_PATH];
@@ -34,7 +28,7 @@ void app_wake(tui_app *app) {
 
 static void set_notice(tui_app *app, bool bad, double seconds) {
     app->notice_bad = bad;
-    app->notice_until = app_clock() + seconds;
+    app->notice_until = clock_seconds() + seconds;
     app->dirty = true;
 }
 

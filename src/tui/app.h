@@ -54,9 +54,6 @@ struct tui_app {
 void app_notice(tui_app *app, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void app_fail(tui_app *app, const report *r);
 
-/* Seconds on the monotonic clock. */
-double app_clock(void);
-
 /* Opens the workbench's ledger; the caller closes it. */
 struct ledger;
 status app_open_ledger(const tui_app *app, struct ledger **out, report *r);

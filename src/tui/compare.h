@@ -25,7 +25,7 @@ typedef struct compare_state {
     int64_t frame;
     bool follows;  /* the newest frame that both have */
     bool plays;    /* frames go on by themselves */
-    double next;   /* s of app_clock: of the next one */
+    double next;   /* s of clock_seconds: of the next one */
     bool log_histogram;
     char colour[32];  /* the quantity; "" the first run's own */
     view_scale scale; /* of both, over all frames seen */

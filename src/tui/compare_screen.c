@@ -1,6 +1,7 @@
 /* The Compare screen: two runs at the same frame, with the same colours and camera, and how their histograms differ. */
 #include "tui/compare.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
 
 #include <ctype.h>
@@ -143,7 +144,7 @@ static status play(tui_app *app, const char *argument, report *r) {
     compare_state *state = compare_state_of(app);
     int64_t first, last;
     state->plays = !state->plays;
-    state->next = app_clock() + play_time;
+    state->next = clock_seconds() + play_time;
     if (state->plays && compare_range(state, &first, &last) && state->frame >= last) state->frame = first, state->stale = true;
     app_notice(app, state->plays ? "Playing; space stops." : "Stopped.");
     return STATUS_OK;

@@ -20,7 +20,7 @@ typedef struct run_pending {
 typedef struct run_state {
     particle_view view;
     bool spinning;    /* the camera turns by itself */
-    double last_turn; /* of the spinning camera, s of app_clock */
+    double last_turn; /* of the spinning camera, s of clock_seconds */
     bool log_histogram;
     char colour[32]; /* asked for last; "" the run's own choice */
     run_panel panel;

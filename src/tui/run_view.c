@@ -1,6 +1,7 @@
 /* The Run screen's handlers for what is seen. */
 #include "tui/run.h"
 
+#include "base/clock.h"
 #include "base/names.h"
 
 #include <string.h>
@@ -44,7 +45,7 @@ status run_spin(tui_app *app, const char *argument, report *r) {
     (void)argument, (void)r;
     run_state *state = run_state_of(app);
     state->spinning = !state->spinning;
-    state->last_turn = app_clock();
+    state->last_turn = clock_seconds();
     app_notice(app, state->spinning ? "The camera turns by itself; a stops it." : "The camera stands still.");
     return STATUS_OK;
 }

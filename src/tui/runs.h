@@ -29,7 +29,7 @@ typedef struct runs_state {
     ledger *l;
     run_table *table;
     char trouble[256]; /* why there is no table */
-    double next_look;  /* s of app_clock: when the ledger is asked whether it has changed */
+    double next_look;  /* s of clock_seconds: when the ledger is asked whether it has changed */
 
     int *rows, row_count, row_capacity; /* rows of the table that are shown, in order */
     int cursor, top, column;            /* cursor: index in rows; column: under the column cursor */
@@ -59,7 +59,7 @@ typedef struct runs_state {
     char field[READER_NAME];     /* the quantity that was; "" the run's usual one */
     particle_view view;
     bool playing;
-    double next_frame; /* s of app_clock, while playing */
+    double next_frame; /* s of clock_seconds, while playing */
 
     char again_of[LEDGER_ID], again_folder[1024]; /* the run that app->run reproduces, "" none; its folder */
 } runs_state;

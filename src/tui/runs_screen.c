@@ -1,6 +1,7 @@
 /* The Runs screen: what the ledger remembers, as a table that is filtered, sorted and marked. */
 #include "tui/runs.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
 
 #include <ctype.h>
@@ -106,11 +107,11 @@ static status read_table(tui_app *app, runs_state *s, report *r) {
 
 void runs_reload(tui_app *app, runs_state *s, bool force) {
     report r;
-    double now = app_clock();
+    double now = clock_seconds();
     if (!force && (now < s->next_look || (s->table && !run_table_is_old(s->table)))) return;
     if (read_table(app, s, &r) != STATUS_OK) report_format(&r, s->trouble, sizeof s->trouble);
     /* A ledger of very many runs is read less often: this must not take the screen's time. */
-    double took = app_clock() - now;
+    double took = clock_seconds() - now;
     s->next_look = now + (20 * took > look_time ? 20 * took : look_time);
     for (int i = s->mark_count - 1; i >= 0 && s->table; i--) {
         if (run_table_find(s->table, s->marks[i]) >= 0) continue;
@@ -336,7 +337,7 @@ status runs_mark(tui_app *app, const char *argument, report *r) {
     app->dirty = true;
     if (s->page == RUNS_PLAYER && !argument[0]) {
         s->playing = !s->playing;
-        s->next_frame = app_clock();
+        s->next_frame = clock_seconds();
         app_log_nothing(app);
         return STATUS_OK;
     }

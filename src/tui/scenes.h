@@ -29,7 +29,7 @@ typedef struct scenes_state {
 
     scene_preview *preview; /* NULL without a terminal */
     preview_facts facts;
-    double ask_at; /* when to look at what is chosen, s of app_clock; 0: it has been */
+    double ask_at; /* when to look at what is chosen, s of clock_seconds; 0: it has been */
     char asked[START_TEXT]; /* what was looked at last */
     bool asked_plan, busy;
 } scenes_state;

@@ -1,6 +1,7 @@
 /* The Scenes screen: which scene, with which recipe and settings; what it contains, and what it will cost. */
 #include "tui/scenes.h"
 
+#include "base/clock.h"
 #include "base/memory.h"
 #include "base/names.h"
 
@@ -44,7 +45,7 @@ bool scenes_words(const scenes_state *s, char out[START_TEXT]) {
 /* What is shown is no longer what is chosen: it is looked at again in a moment. */
 static void changed(tui_app *app, scenes_state *s) {
     s->asked[0] = '\0';
-    s->ask_at = app_clock() + settle_time;
+    s->ask_at = clock_seconds() + settle_time;
     s->asked_plan = false;
     s->preview_scroll = 0;
     app->dirty = true;
@@ -261,7 +262,7 @@ static status plan(tui_app *app, const char *argument, report *r) {
     (void)argument, (void)r;
     scenes_state *s = state_of(app);
     s->asked_plan = true;
-    s->ask_at = app_clock();
+    s->ask_at = clock_seconds();
     return STATUS_OK;
 }
 

@@ -1,4 +1,5 @@
 /* The workbench's loop: signals, keys, the run's state, time, drawing. */
+#include "base/clock.h"
 #include "base/memory.h"
 #include "script/library.h"
 #include "tui/actions.h"
@@ -24,14 +25,14 @@ tui_options tui_options_default(void) {
 }
 
 typedef struct pace {
-    tui_pace draw; /* in seconds of app_clock */
+    tui_pace draw; /* in seconds of clock_seconds */
     bool hung_up;  /* the terminal is gone */
 } pace;
 
 /* ---- what comes in ----------------------------------------------------------------------------------------------- */
 
 static void wait_for_input(const tui_app *app, pace *p) {
-    double now = app_clock(), wait = app->shell->replay.active ? replay_time : pace_frame;
+    double now = clock_seconds(), wait = app->shell->replay.active ? replay_time : pace_frame;
     if (app->notice[0]) wait = fmin(wait, app->notice_until - now);
     wait = pace_wait(&p->draw, now, wait, app->dirty);
     struct pollfd inputs[3] = {{.fd = signals_descriptor(), .events = POLLIN},
@@ -97,7 +98,7 @@ static void take_keys(tui_app *app, pace *p) {
         if (key == KEY_RESIZE) continue;
         if (key == KEY_MOUSE) take_mouse(app);
         else actions_press(app, key);
-        pace_key(&p->draw, app_clock());
+        pace_key(&p->draw, clock_seconds());
     }
 }
 
@@ -131,7 +132,7 @@ static void take_state(tui_app *app) {
 }
 
 static void take_time(tui_app *app) {
-    double now = app_clock();
+    double now = clock_seconds();
     int count;
     const tui_screen *const *list = tui_screens(&count);
     if (app->notice[0] && now >= app->notice_until) {
@@ -148,14 +149,14 @@ static void take_time(tui_app *app) {
 }
 
 static void draw_if_due(tui_app *app, pace *p) {
-    double start = app_clock();
+    double start = clock_seconds();
     if (!app->dirty || !pace_due(&p->draw, start) || app->headless) return;
     app->dirty = false;
     if (app->redraw) clearok(curscr, TRUE);
     app->redraw = false;
     want_mouse(app);
     workbench_draw(app);
-    pace_drawn(&p->draw, start, app_clock());
+    pace_drawn(&p->draw, start, clock_seconds());
 }
 
 static void loop(tui_app *app) {

@@ -9,9 +9,6 @@
 #include <stddef.h>
 #include <stdio.h>
 
-#define SOLID_EFFECT_ADDRESS(name) &SOLID_EFFECT(name),
-static const effect *const effects[SOLID_EFFECTS] = {SOLID_EFFECT_LIST(SOLID_EFFECT_ADDRESS)};
-
 enum { PHASE_SORT, PHASE_P2G, PHASE_GRID, PHASE_G2P };
 
 static int add_field(solid *s, const char *name, int components) {
@@ -35,8 +32,8 @@ static bool is_given(const solid *s, const char *field) {
 
 static bool scales_parameter(const char *field) {
     for (int e = 0; e < SOLID_EFFECTS; e++)
-        for (int k = 0; k < effects[e]->parameter_count; k++)
-            if (effects[e]->parameters[k].scale && strcmp(effects[e]->parameters[k].scale, field) == 0) return true;
+        for (int k = 0; k < solid_effects[e]->parameter_count; k++)
+            if (solid_effects[e]->parameters[k].scale && strcmp(solid_effects[e]->parameters[k].scale, field) == 0) return true;
     return false;
 }
 
@@ -49,8 +46,8 @@ static void plan_fields(solid *s) {
     add_field(s, "deformation_gradient", 9);
     add_field(s, "volume", 1);
     for (int e = 0; e < s->effect_count; e++)
-        for (int i = 0; (s->mask >> e & 1) && i < effects[e]->field_count; i++) {
-            const effect_field *f = &effects[e]->fields[i];
+        for (int i = 0; (s->mask >> e & 1) && i < solid_effects[e]->field_count; i++) {
+            const effect_field *f = &solid_effects[e]->fields[i];
             if (strcmp(f->key, "fibre") == 0 && !s->definition.fibre1) continue;
             if (strcmp(f->key, "fibre2") == 0 && !s->definition.fibre2) continue;
             if (scales_parameter(f->key) && !is_given(s, f->key)) continue;
@@ -74,22 +71,6 @@ static void plan_fields(solid *s) {
     s->swelling_field = find_index(s, "swelling");
     s->diffusion.field = find_index(s, "diffused");
     s->transfers_damage = s->damage_field >= 0;
-}
-
-void solid_constants_refresh(solid *s) {
-    s->implicit_tolerance = s->constraint.tolerance = 1;
-    for (int m = 0; m < s->definition.material_count; m++) {
-        const solid_material *material = &s->definition.materials[m];
-        s->material_mask[m] = 0;
-        for (int e = 0; e < s->effect_count; e++) {
-            if (!material->effects[e].on || !(s->mask >> e & 1)) continue;
-            s->material_mask[m] |= 1u << e;
-            if (effects[e]->stages->constants)
-                effects[e]->stages->constants(material->effects, &s->definition, material->protects, s->constants[m][e]);
-            if (effects[e]->stages->declare) effects[e]->stages->declare(s, m, material->effects);
-        }
-        s->explicit_on |= s->material_damaged[m] && !s->material_implicit[m];
-    }
 }
 
 static size_t share_bytes(const solid *s) {
@@ -129,7 +110,7 @@ static solid *create(const solid_definition *definition, report *r) {
         return NULL;
     }
     s->definition = *definition;
-    s->effects = effects;
+    s->effects = solid_effects;
     s->effect_count = SOLID_EFFECTS;
     s->mask = definition->effect_mask;
     s->threads = definition->threads > 0 ? definition->threads : 1;
@@ -151,14 +132,6 @@ static solid *create(const solid_definition *definition, report *r) {
     transfer_limits(s);
     collect_limits(s);
     return s;
-}
-
-static solid_boundary *boundaries(solid *s) {
-    return s->definition.boundaries;
-}
-
-static void limits(const solid *s, double *limit) {
-    for (int e = 0; e < s->effect_count; e++) limit[e] = s->limits[e] > 0 ? 1 / s->limits[e] : HUGE_VAL;
 }
 
 /* Which quantity of a bad particle is to blame, for the message. */
@@ -205,12 +178,12 @@ static status begin_frame(solid *s, report *r) {
 
 static status solve_effects(solid *s, real dt, report *r) {
     for (int e = 0; e < s->effect_count; e++) {
-        if (!(s->mask >> e & 1) || !effects[e]->stages->solve) continue;
+        if (!(s->mask >> e & 1) || !solid_effects[e]->stages->solve) continue;
         bool done = false; /* one solve serves all damage models */
-        for (int before = 0; before < e; before++) done |= (s->mask >> before & 1) && effects[before]->stages->solve == effects[e]->stages->solve;
+        for (int before = 0; before < e; before++) done |= (s->mask >> before & 1) && solid_effects[before]->stages->solve == solid_effects[e]->stages->solve;
         if (done) continue;
         double start = clock_seconds();
-        status code = effects[e]->stages->solve(s, dt, r);
+        status code = solid_effects[e]->stages->solve(s, dt, r);
         s->solving[e] += clock_seconds() - start;
         if (code != STATUS_OK) return code;
     }
@@ -221,7 +194,7 @@ static status solve_effects(solid *s, real dt, report *r) {
 static status run_stage(solid *s, size_t offset, real dt, report *r) {
     for (int e = 0; e < s->effect_count; e++) {
         status (*stage)(solid *, real, report *);
-        memcpy(&stage, (const char *)effects[e]->stages + offset, sizeof stage);
+        memcpy(&stage, (const char *)solid_effects[e]->stages + offset, sizeof stage);
         if (!(s->mask >> e & 1) || !stage) continue;
         double start = clock_seconds();
         status code = stage(s, dt, r);
@@ -254,17 +227,12 @@ static status step(solid *s, double dt, solid_fault *fault, report *r) {
     return examine(s, dt, fault, r);
 }
 
-static void surround(solid *s, const double gravity[3], double damping) {
-    memcpy(s->definition.gravity, gravity, sizeof s->definition.gravity);
-    s->definition.damping = damping;
-}
-
 /* An effect's own limit follows from what its last step saw; it is brought up to date by the most that any material's constants ask for. */
 static void hasten_limits(solid *s, real before[SOLID_MATERIALS][EFFECT_LIMIT][CONSTANTS]) {
     for (int e = 0; e < s->effect_count; e++) {
         double most = 0;
-        for (int m = 0; effects[e]->stages->hasten && m < s->definition.material_count; m++)
-            if (s->material_mask[m] >> e & 1) most = fmax(most, effects[e]->stages->hasten(before[m][e], s->constants[m][e]));
+        for (int m = 0; solid_effects[e]->stages->hasten && m < s->definition.material_count; m++)
+            if (s->material_mask[m] >> e & 1) most = fmax(most, solid_effects[e]->stages->hasten(before[m][e], s->constants[m][e]));
         if (most > 0) s->limits[e] *= most;
     }
 }
@@ -297,10 +265,6 @@ static double bytes_per_particle(const solid *s) {
     return (bytes + grid_bytes + tables) / (double)s->count;
 }
 
-static void phases(const solid *s, double seconds[SOLID_PHASES]) {
-    memcpy(seconds, s->seconds, sizeof s->seconds);
-}
-
 /* Of the passes the blocks that looked at the clock tell the shares. */
 static void effort(const solid *s, double seconds[SOLID_PHASES][EFFECT_LIMIT]) {
     static const int phase_of[PASSES] = {[PASS_P2G] = PHASE_P2G, [PASS_G2P] = PHASE_G2P};
@@ -313,20 +277,6 @@ static void effort(const solid *s, double seconds[SOLID_PHASES][EFFECT_LIMIT]) {
                 seconds[phase_of[pass]][e] += s->workers[w].clocks[pass].effect[e] / all * s->seconds[phase_of[pass]];
     }
     memcpy(seconds[PHASE_GRID], s->solving, sizeof s->solving);
-}
-
-int solid_stage_names(const stage_place *places, int place_count, uint32_t mask, char (*text)[48], int limit) {
-    int count = 0;
-    for (int i = 0; i < place_count; i++) {
-        if (places[i].pass && count < limit) snprintf(text[count++], sizeof text[0], "%s", places[i].pass);
-        for (int e = 0; e < SOLID_EFFECTS; e++) {
-            void (*stage)(void);
-            memcpy(&stage, (const char *)effects[e]->stages + places[i].offset, sizeof stage);
-            if ((mask >> e & 1) && stage && count < limit)
-                snprintf(text[count++], sizeof text[0], "%s.%s", effects[e]->name, places[i].name);
-        }
-    }
-    return count;
 }
 
 /* The stages of a step in the order in which transfer.c and grid.c call them. */
@@ -351,9 +301,9 @@ static bool knows(const effect *e) {
 #define TEXT(x) TEXT_(x)
 
 const solid_engine solid_engine_table = {
-    .simd = TEXT(SOLID_SIMD_NAME), .precision = SUNDER_PRECISION, .effects = effects, .effect_count = SOLID_EFFECTS,
-    .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .sort = begin_frame, .step = step, .push = particles_push, .settle = diffusion_settle, .feed = diffusion_feed,
+    .simd = TEXT(SOLID_SIMD_NAME), .precision = SUNDER_PRECISION, .effects = solid_effects, .effect_count = SOLID_EFFECTS,
+    .create = create, .destroy = destroy, .boundaries = solid_boundaries, .limits = solid_limits, .sort = begin_frame, .step = step, .push = particles_push, .settle = diffusion_settle, .feed = diffusion_feed,
     .measure = solid_measure, .read = solid_read, .components = components, .save = solid_save, .restore = solid_restore,
-    .stages = stage_names, .knows = knows, .surround = surround, .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = phases,
+    .stages = stage_names, .knows = knows, .surround = solid_surround, .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = solid_phases,
     .phase_names = {"sort", "p2g", "grid", "g2p"}, .effort = effort,
 };

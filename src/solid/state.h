@@ -363,8 +363,12 @@ int solid_read(const solid *s, const char *field, double *out);
 /* snapshot.c */
 status solid_save(const solid *s, record_list *list, report *r);
 status solid_restore(solid *s, const record_list *list, report *r);
-/* engine.c */
+/* both_engines.c: what they do alike, as struct solid_engine documents it */
 void solid_constants_refresh(solid *s);
+solid_boundary *solid_boundaries(solid *s);
+void solid_limits(const solid *s, double *limit);
+void solid_surround(solid *s, const double gravity[3], double damping);
+void solid_phases(const solid *s, double seconds[SOLID_PHASES]);
 /* Names the stages that `places` lists, pass by pass, of the effects in `mask`; returns how many. */
 typedef struct stage_place {
     const char *pass, *name;
@@ -376,5 +380,7 @@ int solid_stage_names(const stage_place *places, int place_count, uint32_t mask,
 #define SOLID_EFFECT(name) SOLID_VARIANT(effect_##name)
 #define SOLID_EFFECT_EXTERN(name) extern const effect SOLID_EFFECT(name);
 SOLID_EFFECT_LIST(SOLID_EFFECT_EXTERN)
+/* All of them, in the order of effects/list.h. */
+extern const effect *const solid_effects[SOLID_EFFECTS];
 
 #endif

@@ -17,7 +17,6 @@
 #include <stddef.h>
 
 enum { PHASE_ELEMENTS = 1, PHASE_VERTICES, PHASE_LIMITS };
-extern const solid_engine solid_tetra_table;
 #define LARGEST_CHANGE ((real)0.5) /* of F in a step, over max(1, |F|) */
 
 static tetra *whole(const solid *s) {
@@ -207,7 +206,7 @@ static solid *create(const solid_definition *definition, report *r) {
     }
     solid *s = &m->base;
     s->definition = *definition;
-    s->effects = solid_tetra_table.effects;
+    s->effects = solid_effects;
     s->effect_count = SOLID_EFFECTS;
     s->mask = definition->effect_mask;
     s->threads = definition->threads > 0 ? definition->threads : 1;
@@ -223,14 +222,6 @@ static solid *create(const solid_definition *definition, report *r) {
     }
     tetra_deform(m);
     return s;
-}
-
-static solid_boundary *boundaries(solid *s) {
-    return s->definition.boundaries;
-}
-
-static void limits(const solid *s, double *limit) {
-    for (int e = 0; e < s->effect_count; e++) limit[e] = s->limits[e] > 0 ? 1 / s->limits[e] : HUGE_VAL;
 }
 
 static status sort(solid *s, report *r) {
@@ -277,11 +268,6 @@ static bool knows(const effect *e) {
     return !s->before && !s->feel && !s->degrade && !s->update && !s->solve && !s->constrain && !s->stress == !s->piola;
 }
 
-static void surround(solid *s, const double gravity[3], double damping) {
-    memcpy(s->definition.gravity, gravity, sizeof s->definition.gravity);
-    s->definition.damping = damping;
-}
-
 static void refresh(solid *s) {
     solid_constants_refresh(s);
     tetra_deform(whole(s));
@@ -295,19 +281,13 @@ static double bytes_per_particle(const solid *s) {
     return vertex + element * s->pack_count * PACK / (double)s->count;
 }
 
-static void phases(const solid *s, double seconds[SOLID_PHASES]) {
-    memcpy(seconds, s->seconds, sizeof s->seconds);
-}
-
 #define TEXT_(x) #x
 #define TEXT(x) TEXT_(x)
-#define ADDRESS(name) &SOLID_EFFECT(name),
-static const effect *const effects[SOLID_EFFECTS] = {SOLID_EFFECT_LIST(ADDRESS)};
 
 const solid_engine solid_tetra_table = {
-    .simd = TEXT(SOLID_SIMD_NAME), .precision = SUNDER_PRECISION, .effects = effects, .effect_count = SOLID_EFFECTS,
-    .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .sort = sort, .step = step,
+    .simd = TEXT(SOLID_SIMD_NAME), .precision = SUNDER_PRECISION, .effects = solid_effects, .effect_count = SOLID_EFFECTS,
+    .create = create, .destroy = destroy, .boundaries = solid_boundaries, .limits = solid_limits, .sort = sort, .step = step,
     .measure = tetra_measure, .read = tetra_read, .components = tetra_components, .save = tetra_save, .restore = tetra_restore,
-    .stages = stage_names, .knows = knows, .surround = surround, .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = phases,
+    .stages = stage_names, .knows = knows, .surround = solid_surround, .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = solid_phases,
     .phase_names = {[PHASE_ELEMENTS] = "elements", [PHASE_VERTICES] = "vertices", [PHASE_LIMITS] = "limits"},
 };

@@ -1,8 +1,8 @@
 #include "tui/frame_reader.h"
 
 #include "base/memory.h"
+#include "tui/newest.h"
 
-#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -15,15 +15,14 @@ typedef struct question {
 } question;
 
 struct frame_reader {
-    pthread_t thread;
-    pthread_mutex_t lock; /* guards what follows, up to `ready` */
-    pthread_cond_t asked;
-    bool closing, waiting, busy, fresh; /* waiting: `next` has not been begun; fresh: `ready` has not been polled */
+    newest thread; /* its lock guards what follows, up to `ready` */
     question next;
+    bool fresh; /* `ready` has not been polled */
     int ready;
 
-    int shown;          /* the screen's own */
-    int working;        /* the thread's own, as what follows */
+    int shown;    /* the screen's own */
+    question now; /* the thread's own, as what follows */
+    int working;
     frame_player *player;
     char opened[READER_PATH];
     float low[3], high[3];
@@ -133,40 +132,34 @@ static status read_frame(frame_reader *p, const question *q, frame_page *page, r
     return code == STATUS_OK ? take_view(page, &view, r) : code;
 }
 
-static void answer(frame_reader *p, const question *q) {
+static void take_question(void *owner) {
+    frame_reader *p = owner;
+    p->now = p->next;
+    p->next.refresh = false;
+}
+
+static void show_page(frame_reader *p) {
+    pthread_mutex_lock(&p->thread.lock);
+    int filled = p->working;
+    p->working = p->ready;
+    p->ready = filled;
+    p->fresh = true;
+    if (!p->thread.closing) p->wake(p->context);
+    pthread_mutex_unlock(&p->thread.lock);
+}
+
+static void answer(void *owner) {
+    frame_reader *p = owner;
     frame_page *page = &p->pages[p->working];
     report r;
-    page->asked = q->frame;
+    page->asked = p->now.frame;
     page->has_frame = false;
     page->problem[0] = page->field[0] = '\0';
     page->frame_count = page->field_count = 0;
     page->view = (frame_view){0};
-    memcpy(page->folder, q->folder, sizeof page->folder);
-    if (read_frame(p, q, page, &r) != STATUS_OK) report_format(&r, page->problem, sizeof page->problem);
-}
-
-static void *work(void *argument) {
-    frame_reader *p = argument;
-    pthread_mutex_lock(&p->lock);
-    while (!p->closing) {
-        if (!p->waiting) {
-            p->busy = false;
-            pthread_cond_wait(&p->asked, &p->lock);
-            continue;
-        }
-        question q = p->next;
-        p->waiting = p->next.refresh = false;
-        pthread_mutex_unlock(&p->lock);
-        answer(p, &q);
-        pthread_mutex_lock(&p->lock);
-        int filled = p->working;
-        p->working = p->ready;
-        p->ready = filled;
-        p->fresh = true;
-        if (!p->closing) p->wake(p->context);
-    }
-    pthread_mutex_unlock(&p->lock);
-    return NULL;
+    memcpy(page->folder, p->now.folder, sizeof page->folder);
+    if (read_frame(p, &p->now, page, &r) != STATUS_OK) report_format(&r, page->problem, sizeof page->problem);
+    show_page(p);
 }
 
 /* ---- the screen's side ------------------------------------------------------------------------------------------- */
@@ -179,42 +172,33 @@ status frame_reader_open(size_t cache_bytes, void (*wake)(void *context), void *
     p->context = context;
     p->ready = 1;
     p->shown = 2;
-    pthread_mutex_init(&p->lock, NULL);
-    pthread_cond_init(&p->asked, NULL);
-    if (pthread_create(&p->thread, NULL, work, p) == 0) return STATUS_OK;
+    status code = newest_open(&p->thread, take_question, answer, p, "to read frames", r);
+    if (code == STATUS_OK) return code;
     memory_free(p, sizeof *p);
     *out = NULL;
-    return report_set(r, STATUS_SYSTEM, "no thread to read frames");
+    return code;
 }
 
 void frame_reader_close(frame_reader *p) {
     if (!p) return;
-    pthread_mutex_lock(&p->lock);
-    p->closing = true;
-    pthread_cond_signal(&p->asked);
-    pthread_mutex_unlock(&p->lock);
-    pthread_join(p->thread, NULL);
-    pthread_cond_destroy(&p->asked);
-    pthread_mutex_destroy(&p->lock);
+    newest_close(&p->thread);
     frame_player_close(p->player);
     for (int i = 0; i < PAGES; i++) clear_page(&p->pages[i]);
     memory_free(p, sizeof *p);
 }
 
 void frame_reader_ask(frame_reader *p, const char *folder, int64_t frame, const char *field, bool refresh) {
-    pthread_mutex_lock(&p->lock);
+    newest_begin(&p->thread);
     bool same = strcmp(p->next.folder, folder) == 0;
     p->next.refresh = refresh || (same && p->next.refresh); /* of a question that this one takes the place of */
     p->next.frame = frame;
     snprintf(p->next.folder, sizeof p->next.folder, "%s", folder);
     snprintf(p->next.field, sizeof p->next.field, "%s", field);
-    p->waiting = p->busy = true;
-    pthread_cond_signal(&p->asked);
-    pthread_mutex_unlock(&p->lock);
+    newest_ask(&p->thread);
 }
 
 bool frame_reader_poll(frame_reader *p) {
-    pthread_mutex_lock(&p->lock);
+    pthread_mutex_lock(&p->thread.lock);
     bool fresh = p->fresh;
     if (fresh) {
         int before = p->shown;
@@ -222,7 +206,7 @@ bool frame_reader_poll(frame_reader *p) {
         p->ready = before;
         p->fresh = false;
     }
-    pthread_mutex_unlock(&p->lock);
+    pthread_mutex_unlock(&p->thread.lock);
     return fresh;
 }
 
@@ -231,8 +215,8 @@ const frame_page *frame_reader_page(const frame_reader *p) {
 }
 
 bool frame_reader_busy(frame_reader *p) {
-    pthread_mutex_lock(&p->lock);
-    bool busy = p->busy || p->fresh;
-    pthread_mutex_unlock(&p->lock);
+    pthread_mutex_lock(&p->thread.lock);
+    bool busy = p->thread.busy || p->fresh;
+    pthread_mutex_unlock(&p->thread.lock);
     return busy;
 }

@@ -2,33 +2,35 @@
 
 #include "base/memory.h"
 #include "sim/simulation.h"
+#include "tui/newest.h"
 
-#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
 static const double time_limit = 0.3; /* s of steps that are timed */
 
-struct scene_preview {
-    pthread_t thread;
-    pthread_mutex_t lock; /* guards all that follows, but `working` */
-    pthread_cond_t asked;
-    bool closing, waiting, busy; /* waiting: `words` has not been begun */
+typedef struct question {
     char words[START_TEXT];
     bool plan;
+} question;
+
+struct scene_preview {
+    newest thread; /* its lock guards what follows, up to `facts` */
+    question next;
     preview_facts facts;
 
-    preview_facts working; /* the thread's own */
+    question now; /* the thread's own, as what follows */
+    preview_facts working;
     start_words start;
     script_reports reports;
 };
 
 static void publish(scene_preview *p) {
-    pthread_mutex_lock(&p->lock);
+    pthread_mutex_lock(&p->thread.lock);
     uint64_t version = p->facts.version + 1;
     p->facts = p->working;
     p->facts.version = version;
-    pthread_mutex_unlock(&p->lock);
+    pthread_mutex_unlock(&p->thread.lock);
 }
 
 static void tell(scene_preview *p, const report *r) {
@@ -130,19 +132,20 @@ static status take_plan(preview_facts *f, script *from, const session_options *o
     return code;
 }
 
-static void look(scene_preview *p, const char *words, bool plan) {
+static void look(void *owner) {
+    scene_preview *p = owner;
     script *loaded = NULL;
     report r;
     memset(&p->working, 0, sizeof p->working);
-    snprintf(p->working.words, sizeof p->working.words, "%s", words);
-    if (start_parse(words, &p->start, &r) != STATUS_OK) {
+    snprintf(p->working.words, sizeof p->working.words, "%s", p->now.words);
+    if (start_parse(p->now.words, &p->start, &r) != STATUS_OK) {
         tell(p, &r);
     } else if (script_load(p->start.scene, &p->start.options.script, &loaded, &p->reports) != STATUS_OK) {
         tell(p, &p->reports.items[0]);
     } else {
         take_scene(&p->working, loaded);
         publish(p);
-        if (plan && take_plan(&p->working, loaded, &p->start.options, &r) != STATUS_OK) tell(p, &r);
+        if (p->now.plan && take_plan(&p->working, loaded, &p->start.options, &r) != STATUS_OK) tell(p, &r);
     }
     script_close(loaded);
     publish(p);
@@ -150,70 +153,44 @@ static void look(scene_preview *p, const char *words, bool plan) {
 
 /* ---- the thread -------------------------------------------------------------------------------------------------- */
 
-static void *work(void *argument) {
-    scene_preview *p = argument;
-    char words[START_TEXT];
-    pthread_mutex_lock(&p->lock);
-    while (!p->closing) {
-        if (!p->waiting) {
-            p->busy = false;
-            pthread_cond_wait(&p->asked, &p->lock);
-            continue;
-        }
-        p->waiting = false;
-        p->busy = true;
-        bool plan = p->plan;
-        memcpy(words, p->words, sizeof words);
-        pthread_mutex_unlock(&p->lock);
-        look(p, words, plan);
-        pthread_mutex_lock(&p->lock);
-    }
-    pthread_mutex_unlock(&p->lock);
-    return NULL;
+static void take_question(void *owner) {
+    scene_preview *p = owner;
+    p->now = p->next;
 }
 
 status preview_open(scene_preview **out, report *r) {
     scene_preview *p = *out = memory_allocate(sizeof *p);
     if (!p) return report_set(r, STATUS_SYSTEM, "out of memory for the scenes' preview");
-    pthread_mutex_init(&p->lock, NULL);
-    pthread_cond_init(&p->asked, NULL);
-    if (pthread_create(&p->thread, NULL, work, p) == 0) return STATUS_OK;
+    status code = newest_open(&p->thread, take_question, look, p, "for the scenes' preview", r);
+    if (code == STATUS_OK) return code;
     memory_free(p, sizeof *p);
     *out = NULL;
-    return report_set(r, STATUS_SYSTEM, "no thread for the scenes' preview");
+    return code;
 }
 
 void preview_close(scene_preview *p) {
-    pthread_mutex_lock(&p->lock);
-    p->closing = true;
-    pthread_cond_signal(&p->asked);
-    pthread_mutex_unlock(&p->lock);
-    pthread_join(p->thread, NULL);
-    pthread_cond_destroy(&p->asked);
-    pthread_mutex_destroy(&p->lock);
+    newest_close(&p->thread);
     memory_free(p, sizeof *p);
 }
 
 void preview_ask(scene_preview *p, const char *words, bool plan) {
-    pthread_mutex_lock(&p->lock);
-    snprintf(p->words, sizeof p->words, "%s", words);
-    p->plan = plan;
-    p->waiting = p->busy = true;
-    pthread_cond_signal(&p->asked);
-    pthread_mutex_unlock(&p->lock);
+    newest_begin(&p->thread);
+    snprintf(p->next.words, sizeof p->next.words, "%s", words);
+    p->next.plan = plan;
+    newest_ask(&p->thread);
 }
 
 bool preview_poll(scene_preview *p, preview_facts *out) {
-    pthread_mutex_lock(&p->lock);
+    pthread_mutex_lock(&p->thread.lock);
     bool fresh = p->facts.version != out->version;
     if (fresh) *out = p->facts;
-    pthread_mutex_unlock(&p->lock);
+    pthread_mutex_unlock(&p->thread.lock);
     return fresh;
 }
 
 bool preview_busy(scene_preview *p) {
-    pthread_mutex_lock(&p->lock);
-    bool busy = p->busy;
-    pthread_mutex_unlock(&p->lock);
+    pthread_mutex_lock(&p->thread.lock);
+    bool busy = p->thread.busy;
+    pthread_mutex_unlock(&p->thread.lock);
     return busy;
 }

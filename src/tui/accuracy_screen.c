@@ -199,11 +199,8 @@ static status turn_axis(tui_app *app, const char *argument, report *r) {
 
 static bool complete_axis(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
     const accuracy_view *s = state_of(app);
-    for (int a = 0; a < s->axis_count; a++) {
-        if (strncmp(s->axes[a].name, text, strlen(text)) != 0 || index-- > 0) continue;
-        snprintf(out, ACTION_ARGUMENT, "%s", s->axes[a].name);
-        return true;
-    }
+    for (int a = 0; a < s->axis_count; a++)
+        if (complete_word(s->axes[a].name, text, &index, out)) return true;
     return false;
 }
 
@@ -315,9 +312,7 @@ static status adopt(tui_app *app, const char *argument, report *r) {
 static status move_cursor(tui_app *app, const char *argument, report *r) {
     accuracy_view *s = state_of(app);
     (void)r;
-    s->cursor += atoi(argument);
-    if (s->cursor >= s->level_count) s->cursor = s->level_count - 1;
-    if (s->cursor < 0) s->cursor = 0;
+    s->cursor = cursor_within(s->cursor + atoi(argument), s->level_count);
     app->dirty = true;
     return STATUS_OK;
 }

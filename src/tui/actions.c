@@ -97,13 +97,20 @@ static status show_commands(tui_app *app, const char *argument, report *r) {
     return STATUS_OK;
 }
 
+bool complete_word(const char *word, const char *text, int *index, char out[ACTION_ARGUMENT]) {
+    if (strncmp(word, text, strlen(text)) != 0 || (*index)-- > 0) return false;
+    snprintf(out, ACTION_ARGUMENT, "%.1000s", word);
+    return true;
+}
+
+int cursor_within(int at, int count) {
+    return at < 0 || count == 0 ? 0 : at < count ? at : count - 1;
+}
+
 static bool complete_theme(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
     (void)app;
-    for (int i = 0; i < TUI_THEMES; i++) {
-        if (strncmp(theme_name((tui_theme_kind)i), text, strlen(text)) != 0 || index-- > 0) continue;
-        snprintf(out, ACTION_ARGUMENT, "%s", theme_name((tui_theme_kind)i));
-        return true;
-    }
+    for (int i = 0; i < TUI_THEMES; i++)
+        if (complete_word(theme_name((tui_theme_kind)i), text, &index, out)) return true;
     return false;
 }
 
@@ -148,11 +155,8 @@ static bool complete_screen(tui_app *app, const char *text, int index, char out[
     (void)app;
     int count;
     const tui_screen *const *list = tui_screens(&count);
-    for (int i = 0; i < count; i++) {
-        if (strncmp(list[i]->name, text, strlen(text)) != 0 || index-- > 0) continue;
-        snprintf(out, ACTION_ARGUMENT, "%s", list[i]->name);
-        return true;
-    }
+    for (int i = 0; i < count; i++)
+        if (complete_word(list[i]->name, text, &index, out)) return true;
     return false;
 }
 

@@ -41,11 +41,8 @@ static void find_runs(tui_app *app, compare_state *state) {
 static bool complete_run(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
     compare_state *state = compare_state_of(app);
     if (index == 0) find_runs(app, state);
-    for (int i = 0; i < state->run_count; i++) {
-        if (strncmp(state->runs[i], text, strlen(text)) != 0 || index-- > 0) continue;
-        snprintf(out, ACTION_ARGUMENT, "%s", state->runs[i]);
-        return true;
-    }
+    for (int i = 0; i < state->run_count; i++)
+        if (complete_word(state->runs[i], text, &index, out)) return true;
     return false;
 }
 
@@ -202,11 +199,8 @@ static const frame_page *any_page(const compare_state *state) {
 
 static bool complete_colour(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
     const frame_page *page = any_page(compare_state_of(app));
-    for (int i = 0; page && i < page->field_count; i++) {
-        if (strncmp(page->fields[i], text, strlen(text)) != 0 || index-- > 0) continue;
-        snprintf(out, ACTION_ARGUMENT, "%s", page->fields[i]);
-        return true;
-    }
+    for (int i = 0; page && i < page->field_count; i++)
+        if (complete_word(page->fields[i], text, &index, out)) return true;
     return false;
 }
 

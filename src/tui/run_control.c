@@ -107,9 +107,7 @@ bool run_complete_checkpoint(tui_app *app, const char *text, int index, char out
     for (int i = state->checkpoint_count; i > 0; i--) {
         char number[32];
         snprintf(number, sizeof number, "%" PRId64, state->checkpoints[i - 1]);
-        if (strncmp(number, text, strlen(text)) != 0 || index-- > 0) continue;
-        snprintf(out, ACTION_ARGUMENT, "%s", number);
-        return true;
+        if (complete_word(number, text, &index, out)) return true;
     }
     return false;
 }

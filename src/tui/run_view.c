@@ -83,11 +83,8 @@ status run_histogram(tui_app *app, const char *argument, report *r) {
 bool run_complete_colour(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
     char names[SESSION_COLOURS][32];
     int count = app->run ? session_colours(app->run, names, SESSION_COLOURS) : 0;
-    for (int i = 0; i < count && i < SESSION_COLOURS; i++) {
-        if (strncmp(names[i], text, strlen(text)) != 0 || index-- > 0) continue;
-        snprintf(out, ACTION_ARGUMENT, "%s", names[i]);
-        return true;
-    }
+    for (int i = 0; i < count && i < SESSION_COLOURS; i++)
+        if (complete_word(names[i], text, &index, out)) return true;
     return false;
 }
 
@@ -124,11 +121,8 @@ const char *run_panel_name(run_panel panel) {
 
 bool run_complete_panel(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
     (void)app;
-    for (int i = 0; i < RUN_PANELS; i++) {
-        if (strncmp(panel_names[i], text, strlen(text)) != 0 || index-- > 0) continue;
-        snprintf(out, ACTION_ARGUMENT, "%s", panel_names[i]);
-        return true;
-    }
+    for (int i = 0; i < RUN_PANELS; i++)
+        if (complete_word(panel_names[i], text, &index, out)) return true;
     return false;
 }
 

@@ -181,9 +181,7 @@ status runs_end(tui_app *app, const char *argument, report *r) {
 static status sideways(tui_app *app, int by, report *r) {
     runs_state *s = runs_state_of(app);
     if (s->page == RUNS_PLAYER) return runs_show_further(app, s, by, r);
-    s->column += by;
-    if (s->column >= s->column_count) s->column = s->column_count - 1;
-    if (s->column < 0) s->column = 0;
+    s->column = cursor_within(s->column + by, s->column_count);
     app->dirty = true;
     return STATUS_OK;
 }
@@ -395,9 +393,7 @@ bool runs_complete_run(tui_app *app, const char *text, int index, char out[ACTIO
     const runs_state *s = runs_state_of(app);
     for (int i = 0; i < s->row_count; i++) {
         const char *id = run_table_id(s->table, s->rows[i]);
-        if (strncmp(id, text, strlen(text)) != 0 || index-- > 0) continue;
-        snprintf(out, ACTION_ARGUMENT, "%s", id);
-        return true;
+        if (complete_word(id, text, &index, out)) return true;
     }
     return false;
 }

@@ -85,15 +85,10 @@ static status move_cursor(tui_app *app, const char *argument, report *r) {
     scenes_state *s = state_of(app);
     int step = atoi(argument);
     if (s->on_settings) {
-        int count = scenes_rows(s);
-        s->parameter += step;
-        if (s->parameter >= count) s->parameter = count - 1;
-        if (s->parameter < 0) s->parameter = 0;
+        s->parameter = cursor_within(s->parameter + step, scenes_rows(s));
         return STATUS_OK;
     }
-    int at = s->cursor + step;
-    if (at >= s->shown_count) at = s->shown_count - 1;
-    if (at < 0) at = 0;
+    int at = cursor_within(s->cursor + step, s->shown_count);
     if (at == s->cursor) return STATUS_OK;
     s->cursor = at;
     forget_choices(s);
@@ -138,11 +133,8 @@ static status choose(tui_app *app, const char *argument, report *r) {
 
 static bool complete_scene(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
     scenes_state *s = state_of(app);
-    for (int i = 0; i < s->count; i++) {
-        if (strncmp(s->list[i].name, text, strlen(text)) != 0 || index-- > 0) continue;
-        snprintf(out, ACTION_ARGUMENT, "%s", s->list[i].name);
-        return true;
-    }
+    for (int i = 0; i < s->count; i++)
+        if (complete_word(s->list[i].name, text, &index, out)) return true;
     return false;
 }
 
@@ -201,9 +193,7 @@ static bool complete_recipe(tui_app *app, const char *text, int index, char out[
     if (index == 0) s->recipe_count = library_recipes(chosen ? chosen->path : ".", s->recipes, SCENES_RECIPES);
     for (int i = -1; i < s->recipe_count; i++) {
         const char *name = i < 0 ? "none" : s->recipes[i];
-        if (strncmp(name, text, strlen(text)) != 0 || index-- > 0) continue;
-        snprintf(out, ACTION_ARGUMENT, "%s", name);
-        return true;
+        if (complete_word(name, text, &index, out)) return true;
     }
     return false;
 }

@@ -83,6 +83,12 @@ const tui_screen *tui_screen_find(const char *name);
 /* The state of a screen, made by its `open` when there is none yet; NULL with a report when that fails. */
 void *screen_state(tui_app *app, const tui_screen *screen, report *r);
 
+/* For a tui_action's `complete`: a word is a candidate when it begins with the text; the one that `index` counts down to is copied. */
+bool complete_word(const char *word, const char *text, int *index, char out[ACTION_ARGUMENT]);
+
+/* The place nearest to `at` in a list of `count`; 0 of an empty one. */
+int cursor_within(int at, int count);
+
 /* Every screen is one line here: a constant tui_screen named screen_NAME in a file of its own. */
 #define TUI_SCREENS(X) X(scenes) X(run) X(compare) X(runs) X(sweep) X(accuracy) X(stress) X(console)
 

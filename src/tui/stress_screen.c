@@ -160,9 +160,7 @@ static void tick_stress(tui_app *app, void *state, double now) {
 
 static status move_by(tui_app *app, int by) {
     stresses *s = stresses_of(app);
-    s->cursor += by;
-    if (s->cursor >= s->shown_count) s->cursor = s->shown_count - 1;
-    if (s->cursor < 0) s->cursor = 0;
+    s->cursor = cursor_within(s->cursor + by, s->shown_count);
     app->dirty = true;
     return STATUS_OK;
 }
@@ -312,21 +310,15 @@ static bool complete_effect(tui_app *app, const char *text, int index, char out[
     int count;
     const effect *const *all = effect_catalogue(&count);
     (void)app;
-    for (int e = 0; e < count; e++) {
-        if (strncmp(all[e]->name, text, strlen(text)) != 0 || index-- > 0) continue;
-        snprintf(out, ACTION_ARGUMENT, "%s", all[e]->name);
-        return true;
-    }
+    for (int e = 0; e < count; e++)
+        if (complete_word(all[e]->name, text, &index, out)) return true;
     return false;
 }
 
 static bool complete_case(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
     const stresses *s = stresses_of(app);
-    for (int i = 0; i < s->count; i++) {
-        if (strncmp(s->rows[i].name, text, strlen(text)) != 0 || index-- > 0) continue;
-        snprintf(out, ACTION_ARGUMENT, "%s", s->rows[i].name);
-        return true;
-    }
+    for (int i = 0; i < s->count; i++)
+        if (complete_word(s->rows[i].name, text, &index, out)) return true;
     return false;
 }
 

@@ -278,9 +278,7 @@ static status move_by(tui_app *app, int down, int across) {
     sweep_state *s = sweep_state_of(app);
     app->dirty = true;
     if (!s->loaded) {
-        s->script += down;
-        if (s->script >= s->script_count) s->script = s->script_count - 1;
-        if (s->script < 0) s->script = 0;
+        s->script = cursor_within(s->script + down, s->script_count);
         return STATUS_OK;
     }
     const int by[2] = {down, across};
@@ -322,11 +320,8 @@ static status go_back(tui_app *app, const char *argument, report *r) {
 
 static bool complete_script(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
     sweep_state *s = sweep_state_of(app);
-    for (int i = 0; i < s->script_count; i++) {
-        if (strncmp(s->scripts[i], text, strlen(text)) != 0 || index-- > 0) continue;
-        snprintf(out, ACTION_ARGUMENT, "%.1000s", s->scripts[i]);
-        return true;
-    }
+    for (int i = 0; i < s->script_count; i++)
+        if (complete_word(s->scripts[i], text, &index, out)) return true;
     return false;
 }
 

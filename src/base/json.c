@@ -207,6 +207,16 @@ void json_raw(json_writer *w, const char *json) {
     put_text(w, json && json[0] ? json : "null");
 }
 
+void json_member_object(json_writer *w, const char *name) {
+    json_key(w, name);
+    json_object(w);
+}
+
+void json_member_array(json_writer *w, const char *name) {
+    json_key(w, name);
+    json_array(w);
+}
+
 void json_member_string(json_writer *w, const char *name, const char *text) {
     json_key(w, name);
     json_string(w, text);

@@ -46,7 +46,9 @@ void json_null(json_writer *w);
 /* Text that is JSON already, taken as it is; NULL or empty is written as null. */
 void json_raw(json_writer *w, const char *json);
 
-/* A member in one call: json_key and the value. */
+/* A member in one call: json_key and the value, or the beginning of one. */
+void json_member_object(json_writer *w, const char *name);
+void json_member_array(json_writer *w, const char *name);
 void json_member_string(json_writer *w, const char *name, const char *text);
 void json_member_number(json_writer *w, const char *name, double value);
 void json_member_integer(json_writer *w, const char *name, int64_t value);

@@ -63,16 +63,14 @@ void accuracy_print_rows(const accuracy_study *s, FILE *out) {
 /* ---- JSON -------------------------------------------------------------------------------------------------------- */
 
 static void json_measures(json_writer *w, const accuracy_study *s, const char *key, const double *values) {
-    json_key(w, key);
-    json_object(w);
+    json_member_object(w, key);
     for (int m = 0; m < s->measure_count; m++)
         if (isfinite(values[m])) json_member_number(w, s->measures[m].name, values[m]);
     json_object_end(w);
 }
 
 static void json_settings(json_writer *w, const axis_level *l, bool own) {
-    json_key(w, "settings");
-    json_object(w);
+    json_member_object(w, "settings");
     for (int i = 0; i < l->settings && !own; i++) json_member_string(w, l->key[i], l->text[i]);
     json_object_end(w);
 }
@@ -124,8 +122,7 @@ static void json_axis(json_writer *w, const accuracy_study *s, int axis) {
     json_measures(w, s, "orders", x->order);
     json_measures(w, s, "left", x->left);
     json_member_number(w, "first_crack", x->crack);
-    json_key(w, "levels");
-    json_array(w);
+    json_member_array(w, "levels");
     for (int l = 0; l < a->count; l++)
         if (s->run_of[axis][l] >= 0) json_level(w, s, axis, l);
     json_array_end(w);
@@ -139,8 +136,7 @@ static int count_state(const accuracy_study *s, accuracy_state state) {
 }
 
 static void json_notes(json_writer *w, const accuracy_study *s, const char *key, int from, int to) {
-    json_key(w, key);
-    json_array(w);
+    json_member_array(w, key);
     for (int i = from; i < to; i++) json_string(w, s->notes[i]);
     json_array_end(w);
 }
@@ -166,8 +162,7 @@ status accuracy_print_json(const accuracy_study *s, report *r) {
     double predicted = accuracy_predicted(s, &waiting);
     json_member_integer(&w, "not_started", waiting);
     json_member_number(&w, "predicted_s", predicted);
-    json_key(&w, "axes");
-    json_array(&w);
+    json_member_array(&w, "axes");
     for (int a = 0; a < s->axis_count; a++) json_axis(&w, s, a);
     json_array_end(&w);
     int advice = s->advice > 0 || s->note_count == 0 ? s->advice : 0;

@@ -206,8 +206,7 @@ static void print_row(const bench_request *q, const bench_report *b, const bench
 /* ---- JSON and CSV ------------------------------------------------------------------------------------------------ */
 
 static void json_machine(json_writer *w, const bench_request *q, const bench_report *b) {
-    json_key(w, "machine");
-    json_object(w);
+    json_member_object(w, "machine");
     json_member_string(w, "processor", b->machine.processor);
     json_member_integer(w, "processors", b->machine.processors);
     json_key(w, "cache_bytes"); /* from the first level */
@@ -218,8 +217,7 @@ static void json_machine(json_writer *w, const bench_request *q, const bench_rep
     double best = 0;
     for (int t = 0; t < q->thread_count; t++) best = fmax(best, b->triad[t]);
     json_member_number(w, "triad_gb_s", best);
-    json_key(w, "triad_gb_s_by_threads");
-    json_object(w);
+    json_member_object(w, "triad_gb_s_by_threads");
     for (int t = 0; t < q->thread_count; t++) {
         char name[16];
         snprintf(name, sizeof name, "%d", q->threads[t]);
@@ -257,8 +255,7 @@ static void json_row(json_writer *w, const bench_request *q, const bench_report 
     json_member_number(w, "above_critical", m->above_critical);
     json_member_number(w, "evaluated", m->evaluated);
     json_member_number(w, "yielded", m->yielded);
-    json_key(w, "phases");
-    json_object(w);
+    json_member_object(w, "phases");
     for (int p = 0; p < BENCH_PHASES; p++) json_member_number(w, bench_phase_names[p], phase_ns(row, p));
     json_object_end(w);
     json_object_end(w);
@@ -283,12 +280,10 @@ static int print_json(const bench_request *q, const bench_report *b) {
     json_object(&w);
     json_member_string(&w, "version", SUNDER_VERSION);
     json_machine(&w, q, b);
-    json_key(&w, "rows");
-    json_array(&w);
+    json_member_array(&w, "rows");
     for (int i = 0; i < b->row_count; i++) json_row(&w, q, b, &b->rows[i]);
     json_array_end(&w);
-    json_key(&w, "scaling");
-    json_array(&w);
+    json_member_array(&w, "scaling");
     for (int i = 0; i < b->scaling_count; i++) json_scaling(&w, q, &b->scaling[i]);
     json_array_end(&w);
     json_object_end(&w);

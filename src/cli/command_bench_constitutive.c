@@ -70,8 +70,7 @@ static void json_precision(json_writer *w, const char *precision, const constitu
 }
 
 static void json_ratios(json_writer *w, const char *precision, const constitutive_result *result) {
-    json_key(w, precision);
-    json_object(w);
+    json_member_object(w, precision);
     for (int i = 0; i < RATIOS; i++) json_member_number(w, ratios[i].key, ratio_of(result, &ratios[i]));
     json_object_end(w);
 }
@@ -85,13 +84,11 @@ static int print_json(const constitutive_result *f32, const constitutive_result 
     json_object(&w);
     json_member_string(&w, "version", SUNDER_VERSION);
     json_member_string(&w, "processor", here.processor);
-    json_key(&w, "rows");
-    json_array(&w);
+    json_member_array(&w, "rows");
     json_precision(&w, "f32", f32);
     json_precision(&w, "f64", f64);
     json_array_end(&w);
-    json_key(&w, "ratios");
-    json_object(&w);
+    json_member_object(&w, "ratios");
     json_ratios(&w, "f32", f32);
     json_ratios(&w, "f64", f64);
     json_object_end(&w);

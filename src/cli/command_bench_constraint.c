@@ -145,8 +145,7 @@ static int print_json(const constraint_row *rows, int count) {
     json_begin(&w, 2);
     json_object(&w);
     json_member_string(&w, "version", SUNDER_VERSION);
-    json_key(&w, "rows");
-    json_array(&w);
+    json_member_array(&w, "rows");
     for (int i = 0; i < count; i++) write_row(&w, &rows[i]);
     json_array_end(&w);
     json_object_end(&w);

@@ -53,8 +53,7 @@ static void json_row(json_writer *w, const sheet_row *row) {
     json_member_number(w, "bond_steps_per_s_per_thread", bond_rate(row) / o->threads);
     json_member_number(w, "ns_per_particle", ns_per_particle(row, m->seconds));
     json_member_number(w, "bytes_per_particle", m->bytes_per_particle);
-    json_key(w, "phases");
-    json_object(w);
+    json_member_object(w, "phases");
     for (int p = 0; p < SHEET_PHASES; p++) json_member_number(w, sheet_bench_phase_names[p], ns_per_particle(row, m->phases[p]));
     json_object_end(w);
     json_object_end(w);
@@ -67,8 +66,7 @@ static status json_machine(json_writer *w, report *r) {
     machine_describe(&m);
     status code = machine_triad(1, &triad, r);
     if (code != STATUS_OK) return code;
-    json_key(w, "machine");
-    json_object(w);
+    json_member_object(w, "machine");
     json_member_string(w, "processor", m.processor);
     json_member_integer(w, "processors", m.processors);
     json_member_number(w, "triad_gb_s", triad);
@@ -123,12 +121,10 @@ static int print_json(const sheet_row *rows, int count, const against_row *other
     json_object(&w);
     json_member_string(&w, "version", SUNDER_VERSION);
     status code = json_machine(&w, &r);
-    json_key(&w, "rows");
-    json_array(&w);
+    json_member_array(&w, "rows");
     for (int i = 0; i < count; i++) json_row(&w, &rows[i]);
     json_array_end(&w);
-    json_key(&w, "against");
-    json_array(&w);
+    json_member_array(&w, "against");
     for (int i = 0; i < other_count; i++) json_against(&w, &others[i]);
     json_array_end(&w);
     json_object_end(&w);

@@ -335,8 +335,7 @@ static void json_row(json_writer *w, const table1_request *q, const measured_row
     json_paper(w, m->row);
     json_member_string(w, "status", outcome_name(m));
     json_member_string(w, "scene", m->scene);
-    json_key(w, "settings");
-    json_array(w);
+    json_member_array(w, "settings");
     for (int i = 0; i < m->setting_count; i++) json_string(w, m->setting_text[i]);
     json_array_end(w);
     json_member_number(w, "scale", q->scale);
@@ -354,13 +353,11 @@ static int print_json(const table1_request *q, const machine *here, const measur
     json_member_string(&w, "processor", here->processor);
     json_member_integer(&w, "processors", here->processors);
     json_member_string(&w, "precision", q->precision == 32 ? "f32" : "f64");
-    json_key(&w, "paper_machines");
-    json_object(&w);
+    json_member_object(&w, "paper_machines");
     json_member_string(&w, "solid", table1_machine(false));
     json_member_string(&w, "sheet", table1_machine(true));
     json_object_end(&w);
-    json_key(&w, "rows");
-    json_array(&w);
+    json_member_array(&w, "rows");
     for (int i = 0; i < count; i++) json_row(&w, q, &rows[i]);
     json_array_end(&w);
     json_object_end(&w);

@@ -21,8 +21,7 @@ static void print_json(const script_reports *reports, const char *note) {
     json_begin(&w, 2);
     json_object(&w);
     json_member_boolean(&w, "ok", reports->count == 0);
-    json_key(&w, "errors");
-    json_array(&w);
+    json_member_array(&w, "errors");
     for (int i = 0; i < reports->count; i++) {
         const report *e = &reports->items[i];
         char text[1600];
@@ -40,8 +39,7 @@ static void print_json(const script_reports *reports, const char *note) {
         json_object_end(&w);
     }
     json_array_end(&w);
-    json_key(&w, "notes");
-    json_array(&w);
+    json_member_array(&w, "notes");
     if (note) json_string(&w, note);
     json_array_end(&w);
     json_object_end(&w);

@@ -79,8 +79,7 @@ static void print_text(const simulation *state, const scene *s, const simulation
 }
 
 static void json_names(json_writer *w, const char *key, const simulation_plan *p, uint32_t mask) {
-    json_key(w, key);
-    json_array(w);
+    json_member_array(w, key);
     for (int e = 0; e < p->effect_count; e++)
         if ((mask >> e & 1) && simulation_concerns(p, e)) json_string(w, p->effects[e]->name);
     json_array_end(w);
@@ -94,8 +93,7 @@ static void json_rates(json_writer *w, const simulation *s) {
         return;
     }
     json_object(w);
-    json_key(w, "particles_by_level");
-    json_array(w);
+    json_member_array(w, "particles_by_level");
     for (int l = 0; l < rates.levels; l++) json_integer(w, rates.particles[l]);
     json_array_end(w);
     json_member_number(w, "share_of_updates", rate_share(&rates));
@@ -112,8 +110,7 @@ static void print_json(const simulation *state, const scene *s, const simulation
     json_member_string(&w, "title", s->title);
     json_names(&w, "effects_on", p, p->mask);
     json_names(&w, "effects_off", p, ~p->mask);
-    json_key(&w, "fields");
-    json_array(&w);
+    json_member_array(&w, "fields");
     for (int i = 0; i < p->field_count; i++) {
         json_object(&w);
         json_member_string(&w, "name", p->fields[i].name);
@@ -123,14 +120,12 @@ static void print_json(const simulation *state, const scene *s, const simulation
     }
     json_array_end(&w);
     json_member_number(&w, "bytes_per_particle", p->bytes_per_particle);
-    json_key(&w, "stages");
-    json_array(&w);
+    json_member_array(&w, "stages");
     char stages[32][48];
     int count = simulation_stages(p, stages, 32);
     for (int i = 0; i < count; i++) json_string(&w, stages[i]);
     json_array_end(&w);
-    json_key(&w, "step_limits");
-    json_object(&w);
+    json_member_object(&w, "step_limits");
     for (int e = 0; e < p->effect_count; e++)
         if (isfinite(p->limits[e])) json_member_number(&w, p->effects[e]->name, p->limits[e]);
     json_object_end(&w);

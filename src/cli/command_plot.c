@@ -173,15 +173,13 @@ static status print_json(const plot_command *c, report *r) {
     json_object(&w);
     json_member_string(&w, "x", c->against ? c->against : "time");
     json_member_string(&w, "out", c->out);
-    json_key(&w, "curves");
-    json_array(&w);
+    json_member_array(&w, "curves");
     for (int i = 0; i < c->curve_count; i++) {
         json_object(&w);
         if (!c->against) json_member_string(&w, "run_id", c->runs[i % c->run_count]);
         json_member_string(&w, "measure", c->measures[c->against ? i : i / c->run_count]);
         for (int axis = 0; axis < 2; axis++) {
-            json_key(&w, axis ? "y" : "x");
-            json_array(&w);
+            json_member_array(&w, axis ? "y" : "x");
             for (int k = 0; k < c->curves[i].count; k++) json_number(&w, axis ? c->curves[i].y[k] : c->curves[i].x[k]);
             json_array_end(&w);
         }

@@ -128,8 +128,7 @@ static int count_verdict(const stress_command *c, stress_verdict v) {
 }
 
 static void write_figures(json_writer *w, const stress_run *run, const hard_case *h) {
-    json_key(w, "figures");
-    json_array(w);
+    json_member_array(w, "figures");
     for (int i = 0; i < h->count; i++) {
         const hard_expectation *e = &h->items[i];
         double value = run->value[e->measure];
@@ -142,8 +141,7 @@ static void write_figures(json_writer *w, const stress_run *run, const hard_case
         json_object_end(w);
     }
     json_array_end(w);
-    json_key(w, "measures");
-    json_object(w);
+    json_member_object(w, "measures");
     for (int m = 0; m < HARD_MEASURE_COUNT; m++)
         if (!isnan(run->value[m])) json_member_number(w, hard_measure_at(m)->key, run->value[m]);
     json_object_end(w);
@@ -180,8 +178,7 @@ static status print_json(const stress_command *c, report *r) {
     json_member_integer(&w, "known_limits", count_verdict(c, STRESS_KNOWN));
     json_member_integer(&w, "fails", count_verdict(c, STRESS_FAILS));
     json_member_integer(&w, "not_run", count_verdict(c, STRESS_WAITING));
-    json_key(&w, "runs");
-    json_array(&w);
+    json_member_array(&w, "runs");
     for (int i = 0; i < c->run_count; i++) write_run(&w, c, &c->runs[i]);
     json_array_end(&w);
     json_object_end(&w);

@@ -250,8 +250,7 @@ static void write_run(json_writer *w, const sweep_command *c, int run) {
     int which[SWEEP_AXES];
     sweep_cell(&c->plan, run, which);
     json_object(w);
-    json_key(w, "settings");
-    json_object(w);
+    json_member_object(w, "settings");
     for (int a = 0; a < c->plan.axis_count; a++) json_member_string(w, c->plan.axes[a].name, axis_value(c, which, a));
     json_object_end(w);
     json_member_string(w, "status", state_names[c->runs[run].state]);
@@ -272,8 +271,7 @@ static status print_json(const sweep_command *c, report *r) {
     json_member_integer(&w, "done", count_state(c, SWEEP_DONE));
     json_member_integer(&w, "done_before", count_state(c, SWEEP_SKIPPED));
     json_member_integer(&w, "failed", count_state(c, SWEEP_FAILED));
-    json_key(&w, "runs");
-    json_array(&w);
+    json_member_array(&w, "runs");
     for (int i = 0; i < c->count; i++) write_run(&w, c, i);
     json_array_end(&w);
     json_object_end(&w);

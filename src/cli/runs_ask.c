@@ -70,8 +70,7 @@ static status list_queries(bool json, report *r) {
     json_writer w;
     json_begin(&w, 0);
     json_object(&w);
-    json_key(&w, "queries");
-    json_array(&w);
+    json_member_array(&w, "queries");
     for (int i = 0; ledger_query_name(i); i++) {
         const char *name = ledger_query_name(i), *sql;
         char text[1024];

@@ -36,8 +36,7 @@ static status tell(const runs_options *o, const char *id, const char *key, const
     json_begin(&w, 0);
     json_object(&w);
     json_member_string(&w, "run_id", id);
-    json_key(&w, key);
-    json_array(&w);
+    json_member_array(&w, key);
     for (const char *at = text; *at;) {
         char item[128];
         size_t length = strcspn(at, ",");
@@ -144,8 +143,7 @@ static status print_removed(const doomed *runs, int count, report *r) {
     json_writer w;
     json_begin(&w, 0);
     json_object(&w);
-    json_key(&w, "removed");
-    json_array(&w);
+    json_member_array(&w, "removed");
     for (int i = 0; i < count; i++) {
         json_object(&w);
         json_member_string(&w, "run_id", runs[i].id);

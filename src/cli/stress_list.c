@@ -47,23 +47,20 @@ static int print_json(const stress_suite *s) {
     report r;
     json_begin(&w, 2);
     json_object(&w);
-    json_key(&w, "coverage");
-    json_array(&w);
+    json_member_array(&w, "coverage");
     for (int e = 0; e < count; e++) {
         missing += stress_coverage(s, e) == 0;
         json_object(&w);
         json_member_string(&w, "effect", all[e]->name);
         json_member_string(&w, "engine", engine_word(all[e]));
-        json_key(&w, "cases");
-        json_array(&w);
+        json_member_array(&w, "cases");
         for (int i = 0; i < s->count; i++)
             if (s->cases[i].effects >> e & 1) json_string(&w, s->cases[i].name);
         json_array_end(&w);
         json_object_end(&w);
     }
     json_array_end(&w);
-    json_key(&w, "cases");
-    json_array(&w);
+    json_member_array(&w, "cases");
     for (int i = 0; i < s->count; i++) {
         json_object(&w);
         json_member_string(&w, "case", s->cases[i].name);

@@ -18,8 +18,7 @@ static const char *outcome_word(status outcome) {
 }
 
 static void vector(json_writer *w, const char *name, const double v[3]) {
-    json_key(w, name);
-    json_array(w);
+    json_member_array(w, name);
     for (int c = 0; c < 3; c++) json_number(w, v[c]);
     json_array_end(w);
 }
@@ -46,8 +45,7 @@ static void write_run(session *s, json_writer *w) {
     json_member_integer(w, "threads", plan->threads);
     json_member_string(w, "precision", plan->precision == 32 ? "f32" : "f64");
     json_member_string(w, "simd", plan->simd);
-    json_key(w, "effects");
-    json_array(w);
+    json_member_array(w, "effects");
     for (int e = 0; e < plan->effect_count; e++)
         if (plan->mask >> e & 1) json_string(w, plan->effects[e]->name);
     json_array_end(w);
@@ -59,8 +57,7 @@ static void write_state(session *s, json_writer *w) {
     json_member_number(w, "dt_min", m->dt_min);
     json_member_number(w, "dt_max", m->dt_max);
     json_member_number(w, "time", m->time);
-    json_key(w, "energy");
-    json_object(w);
+    json_member_object(w, "energy");
     json_member_number(w, "kinetic", sums->kinetic);
     json_member_number(w, "elastic", sums->elastic);
     json_member_number(w, "fibre", sums->fibre);
@@ -70,15 +67,13 @@ static void write_state(session *s, json_writer *w) {
     json_object_end(w);
     vector(w, "momentum", sums->momentum);
     vector(w, "angular_momentum", sums->angular_momentum);
-    json_key(w, "damage");
-    json_object(w);
+    json_member_object(w, "damage");
     json_member_number(w, "mean", sums->damage_mean);
     json_member_number(w, "max", sums->damage_max);
     json_member_number(w, "broken_fraction", sums->broken_fraction);
     json_object_end(w);
     if (m->has_sheet) {
-        json_key(w, "bonds");
-        json_object(w);
+        json_member_object(w, "bonds");
         json_member_integer(w, "total", m->sheet.bonds_total);
         json_member_integer(w, "broken", m->sheet.bonds_broken);
         json_object_end(w);
@@ -93,13 +88,11 @@ static void write_state(session *s, json_writer *w) {
     }
     json_member_number(w, "determinant_min", sums->determinant_min);
     json_member_number(w, "determinant_max", sums->determinant_max);
-    json_key(w, "fibre_stretch");
-    json_object(w);
+    json_member_object(w, "fibre_stretch");
     json_member_number(w, "min", sums->stretch_min);
     json_member_number(w, "max", sums->stretch_max);
     json_object_end(w);
-    json_key(w, "constraint");
-    json_object(w);
+    json_member_object(w, "constraint");
     json_member_integer(w, "solves", sums->constraint_solves);
     json_member_integer(w, "iterations", sums->constraint_iterations);
     json_member_integer(w, "factorisations", sums->constraint_factorisations);

@@ -176,8 +176,7 @@ static status json_history_row(void *context, sqlite3_stmt *statement, report *r
             json_key(h->w, sqlite3_column_name(statement, i));
             detail_json_value(h->w, statement, i);
         }
-        json_key(h->w, "measures");
-        json_object(h->w);
+        json_member_object(h->w, "measures");
         h->open = true;
         h->frame = frame;
     }
@@ -244,8 +243,7 @@ status detail_json(ledger *l, json_writer *w, int64_t run, bool whole, report *r
     if (!s && whole) s = json_rows(l, w, "events", false, detail_events_sql, run, json_event, r);
     if (!s && whole) s = json_rows(l, w, "notes", false, detail_notes_sql, run, json_note, r);
     if (!s && whole) {
-        json_key(w, "history");
-        json_array(w);
+        json_member_array(w, "history");
         s = json_history(l, w, run, r);
         json_array_end(w);
     }

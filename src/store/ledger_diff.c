@@ -139,8 +139,7 @@ static status print_json(ledger *l, FILE *out, const char *a, const char *b, con
     json_member_string(&w, "a", a);
     json_member_string(&w, "b", b);
     for (int i = 0; i < PARTS && !s; i++) {
-        json_key(&w, parts[i].key);
-        json_array(&w);
+        json_member_array(&w, parts[i].key);
         s = detail_each_pair(l, parts[i].sql, runs, add_json, &w, r);
         json_array_end(&w);
     }

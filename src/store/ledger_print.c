@@ -166,8 +166,7 @@ static status list_json(ledger *l, FILE *out, sqlite3_stmt *keys, report *r) {
     status s = STATUS_OK;
     json_begin(&w, 0);
     json_object(&w);
-    json_key(&w, "runs");
-    json_array(&w);
+    json_member_array(&w, "runs");
     while (!s && !(s = ledger_next(l, keys, &row, "list the runs", r)) && row)
         s = detail_json(l, &w, sqlite3_column_int64(keys, 0), false, r);
     json_array_end(&w);

@@ -210,12 +210,10 @@ static status print_json(ledger *l, sqlite3_stmt *statement, void *context, repo
     int count = sqlite3_column_count(statement);
     json_begin(&w, 0);
     json_object(&w);
-    json_key(&w, "columns");
-    json_array(&w);
+    json_member_array(&w, "columns");
     for (int i = 0; i < count && i < COLUMN_LIMIT; i++) json_string(&w, sqlite3_column_name(statement, i));
     json_array_end(&w);
-    json_key(&w, "rows");
-    json_array(&w);
+    json_member_array(&w, "rows");
     status s = each_row(l, statement, add_json_row, &w, r);
     json_array_end(&w);
     json_object_end(&w);

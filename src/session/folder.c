@@ -38,6 +38,16 @@ status request_from_options(run_request *q, const session_options *o, report *r)
     return STATUS_OK;
 }
 
+void request_to_options(const run_request *q, session_options *out) {
+    out->scene_path = q->scene;
+    out->simd = q->simd;
+    out->precision = q->precision;
+    out->frames = q->frames;
+    out->script.recipe = q->recipe[0] ? q->recipe : NULL;
+    out->script.settings = q->settings;
+    out->script.setting_count = q->setting_count;
+}
+
 status request_write(const session *s, report *r) {
     const run_request *q = &s->request;
     char path[SESSION_PATH + 32], *text = NULL;

@@ -118,6 +118,8 @@ void session_release_folder(const session *s);
 
 /* folder.c */
 status request_from_options(run_request *q, const session_options *options, report *r);
+/* Sets what a request has; the strings stay the request's. */
+void request_to_options(const run_request *q, session_options *out);
 status request_write(const session *s, report *r);
 status request_read(run_request *q, const char *folder, report *r);
 status sources_write(const session *s, report *r);

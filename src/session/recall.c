@@ -46,15 +46,8 @@ void session_recall_free(session_recall *recall) {
 }
 
 void session_recall_options(const session_recall *recall, session_options *out) {
-    const run_request *q = &recall->request;
     *out = session_options_default();
-    out->scene_path = q->scene;
-    out->simd = q->simd;
-    out->precision = q->precision;
-    out->frames = q->frames;
-    out->script.recipe = q->recipe[0] ? q->recipe : NULL;
-    out->script.settings = q->settings;
-    out->script.setting_count = q->setting_count;
+    request_to_options(&recall->request, out);
     out->turns = recall->turns;
     out->turn_count = recall->turn_count;
 }

@@ -329,20 +329,13 @@ const char *session_summary(session *s) {
 }
 
 void session_request(const session *s, session_options *out) {
-    const run_request *q = &s->request;
     *out = s->options;
-    out->scene_path = q->scene;
+    request_to_options(&s->request, out);
     out->output = out->resume = out->branch_of = NULL;
     out->branch_frame = 0;
     out->turns = NULL;
     out->turn_count = 0;
     out->database = s->database[0] ? s->database : NULL;
-    out->simd = q->simd;
-    out->precision = q->precision;
-    out->frames = q->frames;
-    out->script.recipe = q->recipe[0] ? q->recipe : NULL;
-    out->script.settings = q->settings;
-    out->script.setting_count = q->setting_count;
     out->start_paused = false;
 }
 

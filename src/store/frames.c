@@ -206,19 +206,6 @@ static status read_clock(hid_t file, const char *path, double *time, int64_t *st
     return s ? s : hdf_read_integer(file, path, "step", step, r);
 }
 
-status frame_read(const char *folder, int64_t frame, record_list *records, double *time, int64_t *step, report *r) {
-    char path[FILE_PATH];
-    hid_t file;
-    HDF_ALONE;
-    records->count = 0;
-    status s = open_frame(folder, frame, path, &file, r);
-    if (s) return s;
-    s = read_clock(file, path, time, step, r);
-    if (!s) s = hdf_read_records(file, path, "VTKHDF", records, r);
-    H5Fclose(file);
-    return s;
-}
-
 status frame_read_named(const char *folder, int64_t frame, const char *const *names, int count, record_list *records,
                         double *time, int64_t *step, report *r) {
     char path[FILE_PATH];
@@ -228,9 +215,13 @@ status frame_read_named(const char *folder, int64_t frame, const char *const *na
     status s = open_frame(folder, frame, path, &file, r);
     if (s) return s;
     s = read_clock(file, path, time, step, r);
-    if (!s) s = hdf_read_named(file, path, names, count, records, r);
+    if (!s) s = names ? hdf_read_named(file, path, names, count, records, r) : hdf_read_records(file, path, "VTKHDF", records, r);
     H5Fclose(file);
     return s;
+}
+
+status frame_read(const char *folder, int64_t frame, record_list *records, double *time, int64_t *step, report *r) {
+    return frame_read_named(folder, frame, NULL, 0, records, time, step, r);
 }
 
 status frame_shapes(const char *folder, int64_t frame, record_list *records, report *r) {

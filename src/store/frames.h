@@ -33,7 +33,7 @@ status frame_write(const char *folder, const frame_header *header, const record_
  * those that are. */
 status frame_read(const char *folder, int64_t frame, record_list *records, double *time, int64_t *step, report *r);
 
-/* The same for chosen records only (those that the frame does not have are left out): what a viewer reads again and again. */
+/* The same for chosen records only (names NULL: all; those that the frame does not have are left out): what a viewer reads again and again. */
 status frame_read_named(const char *folder, int64_t frame, const char *const *names, int count, record_list *records,
                         double *time, int64_t *step, report *r);
 

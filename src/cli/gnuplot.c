@@ -79,7 +79,8 @@ static status make_script(const gnuplot_figure *f, const char *terminal, const c
 
 /* ---- the program ------------------------------------------------------------------------------------------------- */
 
-bool gnuplot_is_there(void) {
+/* Whether the program is on the path. */
+static bool is_there(void) {
     const char *path = getenv("PATH");
     for (const char *at = path ? path : ""; *at;) {
         char name[1024];
@@ -142,7 +143,7 @@ status gnuplot_write(const char *path, const gnuplot_figure *f, report *r) {
     for (int i = 0; i < KINDS; i++)
         if (dot && strcmp(dot, suffixes[i]) == 0) kind = i;
     if (kind < 0) return report_input(r, path, 0, "--out", "a name that ends in .png, .svg, .pdf or .gp (gnuplot's script)", dot ? dot : "none", dot ? name_nearest(dot, suffixes, KINDS) : NULL);
-    if (kind != SCRIPT && !gnuplot_is_there())
+    if (kind != SCRIPT && !is_there())
         return report_set(r, STATUS_SYSTEM, "%.300s: gnuplot is not here to draw it (package gnuplot-nox); a name that ends in .gp keeps its script", path);
     char terminal[96] = "", *text = NULL;
     size_t size = 0;

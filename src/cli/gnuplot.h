@@ -16,9 +16,6 @@ typedef struct gnuplot_figure {
     const int *sizes;         /* [count] */
 } gnuplot_figure;
 
-/* Whether the program is on the path. */
-bool gnuplot_is_there(void);
-
 /* Writes a figure; the suffix says as what: .png, .svg, .pdf, or .gp, the script itself with its data, which needs no gnuplot.
  * Errors: STATUS_INPUT for another suffix; STATUS_SYSTEM when gnuplot is not there (with its package) or fails (with its words). */
 status gnuplot_write(const char *path, const gnuplot_figure *figure, report *r);

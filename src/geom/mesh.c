@@ -164,7 +164,8 @@ static void drop_unused(mesh *m, int32_t *name) {
     for (int64_t c = 0; c < 3 * m->triangle_count; c++) m->triangle[c] = name[m->triangle[c]];
 }
 
-status mesh_weld(mesh *m, double tolerance, report *r) {
+/* Makes vertices nearer than `tolerance` one, and leaves out what that makes useless. */
+static status weld(mesh *m, double tolerance, report *r) {
     size_t count = (size_t)m->vertex_count, slots = 2;
     while (slots < 2 * count) slots *= 2;
     weld_table t = {.m = m, .cell = 4 * tolerance, .tolerance = tolerance, .mask = slots - 1};
@@ -234,7 +235,7 @@ status mesh_read(const char *file, const void *data, size_t size, mesh *out, rep
     double extent = largest_extent(out);
     if (code == STATUS_OK && !(extent >= EXTENT_FLOOR))
         code = report_input(r, file, 0, NULL, "a mesh of some size", "all vertices in one place", NULL);
-    if (code == STATUS_OK) code = mesh_weld(out, WELD_TOLERANCE * extent, r);
+    if (code == STATUS_OK) code = weld(out, WELD_TOLERANCE * extent, r);
     if (code == STATUS_OK && out->triangle_count == 0)
         code = report_input(r, file, 0, NULL, "triangles of some size", "none that welding left", NULL);
     if (code != STATUS_OK) mesh_free(out);

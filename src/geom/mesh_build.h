@@ -30,7 +30,4 @@ status mesh_read_obj(const char *file, const void *data, size_t size, mesh *m, r
 status mesh_read_ply(const char *file, const void *data, size_t size, mesh *m, report *r);
 status mesh_read_stl(const char *file, const void *data, size_t size, mesh *m, report *r);
 
-/* Makes vertices nearer than `tolerance` one, and leaves out what that makes useless. */
-status mesh_weld(mesh *m, double tolerance, report *r);
-
 #endif

@@ -12,7 +12,8 @@ enum { STREAM_SHEET = 0x5b01, AREA_CELLS = 600, DRAWS = 40 };
 
 static const double POINT_LIMIT = 2e8, APART = 0.8;
 
-void plane_axes(const double normal[3], double first[3], double second[3]) {
+/* Two unit vectors in the plane of `normal`, right-handed with it: the first is x, or y where the normal is x, laid into the plane. */
+static void plane_axes(const double normal[3], double first[3], double second[3]) {
     double along = normal[0];
     for (int c = 0; c < 3; c++) first[c] = (c == 0) - along * normal[c];
     if (fabs(along) > 0.9)

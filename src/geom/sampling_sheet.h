@@ -13,9 +13,6 @@ typedef struct sheet_region {
     double normal[3];  /* unit */
 } sheet_region;
 
-/* Two unit vectors in the plane of `normal`, right-handed with it: the first is x, or y where the normal is x, laid into the plane. */
-void plane_axes(const double normal[3], double first[3], double second[3]);
-
 /* The region's area, by counting. 0 for an unbounded shape. */
 double sheet_area(const sheet_region *region);
 

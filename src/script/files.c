@@ -89,7 +89,7 @@ static const char *lua_text(const source_file *file, size_t *size) {
     return text;
 }
 
-void load_text(lua_State *L, const source_file *file) {
+static void load_text(lua_State *L, const source_file *file) {
     size_t size;
     const char *text = lua_text(file, &size);
     report r;

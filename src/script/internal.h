@@ -113,8 +113,6 @@ script *script_of(lua_State *L);
 /* ---- script.c ---- */
 /* A script that has loaded nothing yet: its Lua state is bare. NULL: out of memory. */
 script *script_create(const script_options *options, script_reports *reports);
-/* Calls a function with one pointer under the script's limits; what goes wrong is recorded. */
-void script_run_protected(script *s, lua_CFunction call, void *request);
 /* Loads a Lua file that is no scene: runs it, then `read` with what it returned on top of the stack. `path`: as given; `file`: as people write it. */
 typedef void script_reader(lua_State *L, const char *path, const char *file, void *out);
 status script_load_file(const char *path, script_reader *read, void *out, script_reports *reports);
@@ -219,7 +217,6 @@ const source_file *find_source(const script *s, const char *display);
  * run's folder has it. `endings` lists those allowed, as in ".obj.ply.stl", and is part of what was expected. NULL after
  * recording a problem at `p`. */
 const source_file *read_data_file(script *s, const char *name, const char *endings, const place *p);
-void load_text(lua_State *L, const source_file *file);
 
 /* ---- module.c ---- */
 /* Builds the module `sunder`: leaves it on the stack. */

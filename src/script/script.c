@@ -41,7 +41,7 @@ static int load_protected(lua_State *L) {
 }
 
 /* Calls a function with one pointer; what goes wrong is recorded. */
-void script_run_protected(script *s, lua_CFunction call, void *request) {
+static void run_protected(script *s, lua_CFunction call, void *request) {
     lua_State *L = s->L;
     guard_begin(&s->guard);
     lua_pushcfunction(L, error_handler);
@@ -139,7 +139,7 @@ status script_load(const char *path, const script_options *options, script **out
         return report_set(&reports->items[0], STATUS_SYSTEM, "out of memory while %s was loaded", path);
     }
     load_request q = {path, options};
-    script_run_protected(s, load_protected, &q);
+    run_protected(s, load_protected, &q);
     finish_loading(s);
     s->reports = NULL;
     if (s->problem_count == 0) {
@@ -173,7 +173,7 @@ status script_load_file(const char *path, script_reader *read, void *out, script
         reports->count = 1;
         return report_set(&reports->items[0], STATUS_SYSTEM, "out of memory while %s was loaded", path);
     }
-    script_run_protected(s, load_file_protected, &(file_request){path, read, out});
+    run_protected(s, load_file_protected, &(file_request){path, read, out});
     s->reports = NULL;
     bool fine = s->problem_count == 0;
     if (!fine) sort_reports(s, reports);

@@ -11,7 +11,8 @@ rigid_boundary *engine_boundaries(const simulation *s) {
     return s->solid ? s->engine->boundaries(s->solid) : s->sheets->boundaries(s->sheet);
 }
 
-void engine_share_boundaries(const simulation *s) {
+/* Where a scene has both, the second engine's boundaries move as those do. */
+static void share_boundaries(const simulation *s) {
     if (!s->solid || !s->sheet) return;
     const rigid_boundary *from = s->engine->boundaries(s->solid);
     rigid_boundary *to = s->sheets->boundaries(s->sheet);
@@ -64,7 +65,7 @@ void engine_limits(const simulation *s, double limit[EFFECT_LIMIT]) {
 status engine_step(simulation *s, double dt, report *r) {
     solid_fault fault;
     sheet_fault sheet_trouble;
-    engine_share_boundaries(s);
+    share_boundaries(s);
     status code = s->solid ? s->engine->step(s->solid, dt, &fault, r) : STATUS_OK;
     if (code == STATUS_OK && s->sheet) code = s->sheets->step(s->sheet, s->time, dt, &sheet_trouble, r);
     if (code == STATUS_OK && s->contact) contact_apply(s, dt);

@@ -32,8 +32,6 @@ struct simulation {
 
 /* engines.c: both engines behind one face */
 rigid_boundary *engine_boundaries(const simulation *s);
-/* Where a scene has both, the second engine's boundaries move as those do. */
-void engine_share_boundaries(const simulation *s);
 /* By index in the catalogue, the scene's cfl included. */
 void engine_limits(const simulation *s, double limit[EFFECT_LIMIT]);
 /* The step in which a grip or collider of that speed moves material less than a cell. */

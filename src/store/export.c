@@ -22,9 +22,15 @@ status export_end(export_file *f, status outcome, report *r) {
     return outcome;
 }
 
+/* Suffix of a path, "" for none. */
+static const char *suffix_of(const char *path) {
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+    return dot ? dot : "";
+}
+
 status export_write(const char *path, const export_format *formats, int count, const char *expected, const void *thing, report *r) {
     enum { MOST = 8 };
-    const char *names[MOST], *suffix = export_suffix(path);
+    const char *names[MOST], *suffix = suffix_of(path);
     assert(count <= MOST);
     for (int i = 0; i < count; i++) {
         names[i] = formats[i].suffix;
@@ -67,13 +73,8 @@ const record *export_field(const record_list *records, const char *set, int inde
     return NULL;
 }
 
-const char *export_suffix(const char *path) {
-    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-    return dot ? dot : "";
-}
-
 status export_sequence_path(const char *out, int64_t frame, char path[1024], report *r) {
-    const char *suffix = export_suffix(out);
+    const char *suffix = suffix_of(out);
     int front = (int)(strlen(out) - strlen(suffix));
     if (snprintf(path, 1024, "%.*s.%06" PRId64 "%s", front, out, frame, suffix) < 1024) return STATUS_OK;
     return report_input(r, out, 0, "--out", "a shorter path", "one that does not fit", NULL);

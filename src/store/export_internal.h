@@ -22,9 +22,6 @@ const record *export_positions(const record_list *records, const char *set);
 /* A record's name without its set. */
 const char *export_short_name(const record *item);
 
-/* Suffix of a path, "" for none. */
-const char *export_suffix(const char *path);
-
 /* A format of files by its suffix: how a thing (points, a mesh) is written in it. */
 typedef struct export_format {
     const char *suffix;

@@ -193,11 +193,11 @@ status hdf_write_text(hid_t object, const char *path, const char *name, const ch
     return s;
 }
 
-status hdf_write_integer(hid_t object, const char *path, const char *name, int64_t value, report *r) {
+static status write_integer(hid_t object, const char *path, const char *name, int64_t value, report *r) {
     return write_attribute(object, path, name, H5T_STD_I64LE, H5T_NATIVE_INT64, &value, r);
 }
 
-status hdf_write_number(hid_t object, const char *path, const char *name, double value, report *r) {
+static status write_number(hid_t object, const char *path, const char *name, double value, report *r) {
     return write_attribute(object, path, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value, r);
 }
 
@@ -243,8 +243,8 @@ status hdf_write_header(hid_t file, const char *path, const char *format, const 
     status s = STATUS_OK;
     for (size_t i = 0; i < sizeof texts / sizeof texts[0] && !s; i++)
         s = hdf_write_text(file, path, texts[i].name, texts[i].value, r);
-    if (!s) s = hdf_write_integer(file, path, "frame", header->frame, r);
-    if (!s) s = hdf_write_integer(file, path, "step", header->step, r);
-    if (!s) s = hdf_write_number(file, path, "time", header->time, r);
+    if (!s) s = write_integer(file, path, "frame", header->frame, r);
+    if (!s) s = write_integer(file, path, "step", header->step, r);
+    if (!s) s = write_number(file, path, "time", header->time, r);
     return s;
 }

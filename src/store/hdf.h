@@ -39,8 +39,6 @@ status hdf_open(const char *path, hid_t *file, report *r);
 
 /* Attributes of a file, group or dataset. */
 status hdf_write_text(hid_t object, const char *path, const char *name, const char *value, report *r);
-status hdf_write_integer(hid_t object, const char *path, const char *name, int64_t value, report *r);
-status hdf_write_number(hid_t object, const char *path, const char *name, double value, report *r);
 status hdf_read_text(hid_t object, const char *path, const char *name, char *value, size_t size, report *r);
 status hdf_read_integer(hid_t object, const char *path, const char *name, int64_t *value, report *r);
 status hdf_read_number(hid_t object, const char *path, const char *name, double *value, report *r);

@@ -59,7 +59,8 @@ status ledger_runs_folder(char *path, size_t size, report *r) {
 
 /* ---- statements -------------------------------------------------------------------------------------------------- */
 
-status ledger_fail(ledger *l, const char *doing, report *r) {
+/* Fills `r` with STATUS_SYSTEM: "PATH: cannot DOING: SQLite's message". */
+static status fail(ledger *l, const char *doing, report *r) {
     int code = l->database ? sqlite3_errcode(l->database) : SQLITE_NOMEM;
     const char *message = l->database ? sqlite3_errmsg(l->database) : "out of memory";
     if ((code & 0xff) == SQLITE_BUSY) message = "another process has kept it locked for ten seconds";
@@ -69,7 +70,7 @@ status ledger_fail(ledger *l, const char *doing, report *r) {
 }
 
 status ledger_execute(ledger *l, const char *sql, const char *doing, report *r) {
-    return sqlite3_exec(l->database, sql, NULL, NULL, NULL) == SQLITE_OK ? STATUS_OK : ledger_fail(l, doing, r);
+    return sqlite3_exec(l->database, sql, NULL, NULL, NULL) == SQLITE_OK ? STATUS_OK : fail(l, doing, r);
 }
 
 status ledger_statement(ledger *l, const char *sql, sqlite3_stmt **statement, report *r) {
@@ -82,7 +83,7 @@ status ledger_statement(ledger *l, const char *sql, sqlite3_stmt **statement, re
     }
     assert(l->statement_count < STATEMENT_LIMIT);
     if (sqlite3_prepare_v3(l->database, sql, -1, SQLITE_PREPARE_PERSISTENT, statement, NULL) != SQLITE_OK)
-        return ledger_fail(l, "prepare a statement", r);
+        return fail(l, "prepare a statement", r);
     l->statements[l->statement_count].sql = sql;
     l->statements[l->statement_count++].statement = *statement;
     return STATUS_OK;
@@ -107,7 +108,7 @@ status ledger_next(ledger *l, sqlite3_stmt *statement, bool *row, const char *do
     int code = sqlite3_step(statement);
     *row = code == SQLITE_ROW;
     if (*row) return STATUS_OK;
-    status s = code == SQLITE_DONE ? STATUS_OK : ledger_fail(l, doing, r);
+    status s = code == SQLITE_DONE ? STATUS_OK : fail(l, doing, r);
     sqlite3_reset(statement);
     return s;
 }
@@ -159,7 +160,7 @@ static status read_identity(ledger *l, identity *found, report *r) {
     sqlite3_stmt *statement;
     int code = sqlite3_prepare_v2(l->database, sql, -1, &statement, NULL);
     if (code == SQLITE_OK) code = sqlite3_step(statement);
-    status s = code == SQLITE_ROW ? STATUS_OK : ledger_fail(l, "read it", r);
+    status s = code == SQLITE_ROW ? STATUS_OK : fail(l, "read it", r);
     if (!s)
         *found = (identity){sqlite3_column_int64(statement, 0), sqlite3_column_int64(statement, 1),
                             sqlite3_column_int64(statement, 2)};
@@ -213,7 +214,7 @@ static status use_write_ahead_log(ledger *l, report *r) {
         int code = sqlite3_exec(l->database, "PRAGMA journal_mode = WAL", NULL, NULL, NULL);
         if (code == SQLITE_OK) return STATUS_OK;
         if (code != SQLITE_BUSY || tries == BUSY_MILLISECONDS / 10)
-            return ledger_fail(l, "turn its write-ahead log on", r);
+            return fail(l, "turn its write-ahead log on", r);
         nanosleep(&pause, NULL);
     }
 }
@@ -249,7 +250,7 @@ static status cannot_open(ledger *l, report *r) {
     if (slash) slash[slash == folder] = '\0';
     const char *probe = access(l->path, F_OK) == 0 ? l->path : slash ? folder : ".";
     return access(probe, W_OK) != 0 ? file_fail(r, l->path, "open the ledger", errno)
-                                    : ledger_fail(l, "open the ledger", r);
+                                    : fail(l, "open the ledger", r);
 }
 
 static status open_database(ledger *l, report *r) {

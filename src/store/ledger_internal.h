@@ -20,9 +20,6 @@ struct ledger {
     } statements[STATEMENT_LIMIT];
 };
 
-/* Fills `r` with STATUS_SYSTEM: "PATH: cannot DOING: SQLite's message". */
-status ledger_fail(ledger *l, const char *doing, report *r);
-
 /* Runs SQL without results. */
 status ledger_execute(ledger *l, const char *sql, const char *doing, report *r);
 

@@ -19,7 +19,8 @@ static const struct {
                   {"backspace", KEY_BACKSPACE}, {"shift-left", KEY_SLEFT}, {"shift-right", KEY_SRIGHT}};
 enum { NAMED_KEYS = sizeof named_keys / sizeof *named_keys };
 
-int binding_key(const char *name) {
+/* The code of a key's name; 0: not one. */
+static int binding_key(const char *name) {
     if (name[0] && !name[1]) return (unsigned char)name[0];
     for (int i = 0; i < NAMED_KEYS; i++)
         if (strcasecmp(named_keys[i].name, name) == 0) return named_keys[i].key;

@@ -35,8 +35,6 @@ typedef struct compare_state {
     char differs[COMPARE_TEXT]; /* parameters and turns that are not the same */
 } compare_state;
 
-compare_state *compare_state_of(tui_app *app);
-
 /* Puts a run on a side: an id, its beginning or end, or last. */
 status compare_choose(tui_app *app, compare_state *state, int side, const char *run, report *r);
 

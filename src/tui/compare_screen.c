@@ -14,7 +14,7 @@
 enum { CACHE_BYTES = 96 << 20 };
 static const double play_time = 0.1; /* s a frame */
 
-compare_state *compare_state_of(tui_app *app) {
+static compare_state *state_of(tui_app *app) {
     report unused;
     return screen_state(app, &screen_compare, &unused);
 }
@@ -39,7 +39,7 @@ static void find_runs(tui_app *app, compare_state *state) {
 
 /* All candidates are asked for, one after the other: the ledger is read at the first. */
 static bool complete_run(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
-    compare_state *state = compare_state_of(app);
+    compare_state *state = state_of(app);
     if (index == 0) find_runs(app, state);
     for (int i = 0; i < state->run_count; i++)
         if (complete_word(state->runs[i], text, &index, out)) return true;
@@ -47,7 +47,7 @@ static bool complete_run(tui_app *app, const char *text, int index, char out[ACT
 }
 
 static status choose(tui_app *app, int side, const char *run, report *r) {
-    compare_state *state = compare_state_of(app);
+    compare_state *state = state_of(app);
     status s = compare_choose(app, state, side, run, r);
     if (s == STATUS_OK) app_log_argument(app, "%s", state->sides[side].id);
     return s;
@@ -65,7 +65,7 @@ static status choose_right(tui_app *app, const char *argument, report *r) {
 static status choose_branch(tui_app *app, const char *argument, report *r) {
     (void)argument;
     if (!app->run) return report_set(r, STATUS_INPUT, "There is no run; A and B choose runs of the ledger.");
-    compare_state *state = compare_state_of(app);
+    compare_state *state = state_of(app);
     if (!app->shot->parent[0]) return report_set(r, STATUS_INPUT, "This run is no branch; A chooses what to compare it with.");
     status s = compare_choose(app, state, 1, app->shot->run_id, r);
     return s == STATUS_OK ? compare_choose(app, state, 0, app->shot->parent, r) : s;
@@ -73,7 +73,7 @@ static status choose_branch(tui_app *app, const char *argument, report *r) {
 
 static status swap(tui_app *app, const char *argument, report *r) {
     (void)argument;
-    compare_state *state = compare_state_of(app);
+    compare_state *state = state_of(app);
     char ids[COMPARE_SIDES][LEDGER_ID];
     for (int i = 0; i < COMPARE_SIDES; i++) memcpy(ids[i], state->sides[i].id, LEDGER_ID);
     if (!ids[0][0] || !ids[1][0]) return report_set(r, STATUS_INPUT, "There are no two runs; A and B choose them.");
@@ -84,7 +84,7 @@ static status swap(tui_app *app, const char *argument, report *r) {
 /* ---- which frame ------------------------------------------------------------------------------------------------- */
 
 static status show_frame(tui_app *app, int64_t frame, report *r) {
-    compare_state *state = compare_state_of(app);
+    compare_state *state = state_of(app);
     int64_t first, last;
     if (!state->sides[0].id[0] && !state->sides[1].id[0]) return report_set(r, STATUS_INPUT, "There are no frames; A and B choose runs.");
     if (compare_range(state, &first, &last)) frame = frame < first ? first : frame > last ? last : frame;
@@ -97,7 +97,7 @@ static status show_frame(tui_app *app, int64_t frame, report *r) {
 
 static status by_frames(tui_app *app, const char *argument, int by, report *r) {
     if (argument[0]) return show_frame(app, atoll(argument), r);
-    return show_frame(app, compare_state_of(app)->frame + by, r);
+    return show_frame(app, state_of(app)->frame + by, r);
 }
 
 static status next_frame(tui_app *app, const char *argument, report *r) {
@@ -124,7 +124,7 @@ static status first_frame(tui_app *app, const char *argument, report *r) {
 static status last_frame(tui_app *app, const char *argument, report *r) {
     (void)argument;
     status s = show_frame(app, INT64_MAX, r);
-    if (s == STATUS_OK) compare_state_of(app)->follows = true;
+    if (s == STATUS_OK) state_of(app)->follows = true;
     return s;
 }
 
@@ -138,7 +138,7 @@ static status go_to_frame(tui_app *app, const char *argument, report *r) {
 
 static status play(tui_app *app, const char *argument, report *r) {
     (void)argument, (void)r;
-    compare_state *state = compare_state_of(app);
+    compare_state *state = state_of(app);
     int64_t first, last;
     state->plays = !state->plays;
     state->next = clock_seconds() + play_time;
@@ -150,7 +150,7 @@ static status play(tui_app *app, const char *argument, report *r) {
 /* ---- what is seen ------------------------------------------------------------------------------------------------ */
 
 static status act(tui_app *app, const char *verb, const char *argument, report *r) {
-    compare_state *state = compare_state_of(app);
+    compare_state *state = state_of(app);
     char text[96];
     status s = particle_view_act(&state->sides[0].view, verb, argument, text, r);
     particle_view_match(&state->sides[1].view, &state->sides[0].view);
@@ -179,10 +179,10 @@ COMPARE_VIEW(set_scale, "scale")
 
 static status change_mode(tui_app *app, const char *argument, report *r) {
     (void)argument, (void)r;
-    particle_view *view = &compare_state_of(app)->sides[0].view;
+    particle_view *view = &state_of(app)->sides[0].view;
     if (app->theme.ascii) return report_set(r, STATUS_INPUT, "Only ASCII: the locale's character set is not UTF-8.");
     view->mode = (view_mode)((view->mode + 1) % VIEW_MODES);
-    particle_view_match(&compare_state_of(app)->sides[1].view, view);
+    particle_view_match(&state_of(app)->sides[1].view, view);
     view->old = true;
     app_notice(app, "Particles as %s.", view_mode_name(view->mode));
     return STATUS_OK;
@@ -198,14 +198,14 @@ static const frame_page *any_page(const compare_state *state) {
 }
 
 static bool complete_colour(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
-    const frame_page *page = any_page(compare_state_of(app));
+    const frame_page *page = any_page(state_of(app));
     for (int i = 0; page && i < page->field_count; i++)
         if (complete_word(page->fields[i], text, &index, out)) return true;
     return false;
 }
 
 static status change_colour(tui_app *app, const char *argument, report *r) {
-    compare_state *state = compare_state_of(app);
+    compare_state *state = state_of(app);
     const frame_page *page = any_page(state);
     if (!page && !argument[0]) return report_set(r, STATUS_INPUT, "There are no frames yet; A and B choose runs.");
     if (page && argument[0] && !frame_page_has(page, argument))
@@ -223,7 +223,7 @@ static status change_colour(tui_app *app, const char *argument, report *r) {
 
 static status change_histogram(tui_app *app, const char *argument, report *r) {
     (void)argument, (void)r;
-    compare_state *state = compare_state_of(app);
+    compare_state *state = state_of(app);
     state->log_histogram = !state->log_histogram;
     app_notice(app, state->log_histogram ? "Histogram: logarithmic." : "Histogram: linear.");
     return STATUS_OK;

@@ -24,7 +24,6 @@ typedef struct console_state {
     char answer[CONSOLE_ANSWER], trouble[1600];
 } console_state;
 
-void console_say(console_state *c, tui_style style, const char *text);
 void console_insert(console_state *c, const char *text);
 /* Completes the word before the cursor: a function, or within quotes a knob's path or an action's name. */
 void console_complete(tui_app *app, console_state *c);

@@ -25,7 +25,7 @@ static void add_line(console_state *c, tui_style style, const char *text, size_t
     snprintf(line->text, sizeof line->text, "%.*s", (int)size, text);
 }
 
-void console_say(console_state *c, tui_style style, const char *text) {
+static void say(console_state *c, tui_style style, const char *text) {
     while (*text) {
         size_t length = strcspn(text, "\n"), most = CONSOLE_WIDTH - 1;
         add_line(c, style, text, length < most ? length : most);
@@ -51,7 +51,7 @@ static status run(tui_app *app, const char *argument, report *r) {
     if (!c->worker) return report_set(r, STATUS_INPUT, "The console needs a terminal.");
     if (console_busy(c->worker)) return report_set(r, STATUS_INPUT, "The line before is still running; Esc stops it.");
     snprintf(echo, sizeof echo, "> %s", argument);
-    console_say(c, STYLE_HEAD, echo);
+    say(c, STYLE_HEAD, echo);
     remember(c, argument);
     c->history_at = c->history_count;
     console_ask(c->worker, argument);
@@ -166,7 +166,7 @@ static bool type(tui_app *app, void *state, int key) {
 static status open_console(tui_app *app, void **state, report *r) {
     console_state *c = *state = memory_allocate(sizeof *c);
     if (!c) return report_set(r, STATUS_SYSTEM, "out of memory for the console");
-    console_say(c, STYLE_DIM, "Lua on the live run and the ledger, with what scenes have. help() says what there is; Tab completes.");
+    say(c, STYLE_DIM, "Lua on the live run and the ledger, with what scenes have. help() says what there is; Tab completes.");
     if (app->headless) return STATUS_OK;
     status failed = console_work_open(app, &c->worker, r);
     if (failed != STATUS_OK) memory_free(c, sizeof *c);
@@ -187,8 +187,8 @@ static void tick(tui_app *app, void *state, double now) {
     status outcome;
     if (console_serve(app, c->worker)) app->dirty = true;
     if (!console_take(c->worker, c->answer, sizeof c->answer, &outcome, c->trouble, sizeof c->trouble)) return;
-    console_say(c, STYLE_TEXT, c->answer);
-    if (outcome != STATUS_OK) console_say(c, STYLE_BAD, c->trouble);
+    say(c, STYLE_TEXT, c->answer);
+    if (outcome != STATUS_OK) say(c, STYLE_BAD, c->trouble);
     app->dirty = true;
 }
 

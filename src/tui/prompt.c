@@ -39,7 +39,8 @@ static bool name_candidate(tui_app *app, const char *typed, int index, char *out
     return false;
 }
 
-bool prompt_candidate(tui_app *app, const char *typed, int index, char *out, size_t size) {
+/* The index-th completion of what is typed, as a whole new text; false when there is none. */
+static bool prompt_candidate(tui_app *app, const char *typed, int index, char *out, size_t size) {
     const char *space = strchr(typed, ' ');
     if (!space) return name_candidate(app, typed, index, out, size);
     char name[SHELL_NAME], argument[ACTION_ARGUMENT];

@@ -66,8 +66,6 @@ typedef struct runs_state {
 
 runs_state *runs_state_of(tui_app *app);
 
-/* The run under the cursor; NULL when there is none. */
-const char *runs_chosen(const runs_state *s);
 /* The run that an argument names (id, its beginning or end), or the one under the cursor when it is empty. */
 status runs_named(tui_app *app, runs_state *s, const char *argument, char id[LEDGER_ID], char folder[1024], report *r);
 bool runs_is_marked(const runs_state *s, const char *id);
@@ -76,15 +74,10 @@ status runs_choose_shown(runs_state *s, int least, report *r);
 
 /* Reads the ledger again when it has changed (`force`: in any case), keeping cursor and marks. */
 void runs_reload(tui_app *app, runs_state *s, bool force);
-/* Applies filter and sorting to the table as it is. */
-status runs_arrange(runs_state *s, report *r);
 
 /* runs_draw.c, runs_detail.c, runs_plot.c, runs_player.c */
 void runs_draw(tui_app *app, void *state, tui_area area);
-/* A cell as people read it. */
-void runs_format_cell(const run_column *c, int row, char text[RUNS_CELL]);
 void runs_draw_detail(tui_app *app, runs_state *s, tui_area area);
-status runs_read_detail(runs_state *s, bool only_differences, report *r);
 void runs_draw_plot(tui_app *app, runs_state *s, tui_area area);
 status runs_read_curves(runs_state *s, report *r);
 void runs_draw_player(tui_app *app, runs_state *s, tui_area area);

@@ -83,7 +83,7 @@ static status read_part(runs_state *s, int part, bool only_differences, report *
     return code;
 }
 
-status runs_read_detail(runs_state *s, bool only_differences, report *r) {
+static status read_detail(runs_state *s, bool only_differences, report *r) {
     status code = STATUS_OK;
     if (!s->lines) s->lines = memory_allocate_array(RUNS_LINES, sizeof *s->lines);
     if (!s->lines) return report_set(r, STATUS_SYSTEM, "out of memory for a comparison");
@@ -96,7 +96,7 @@ status runs_diff(tui_app *app, const char *argument, report *r) {
     runs_state *s = runs_state_of(app);
     (void)argument;
     status code = runs_choose_shown(s, 2, r);
-    if (code == STATUS_OK) code = runs_read_detail(s, true, r);
+    if (code == STATUS_OK) code = read_detail(s, true, r);
     if (code == STATUS_OK) s->page = RUNS_DETAIL;
     app->dirty = true;
     return code;
@@ -109,7 +109,7 @@ status runs_detail(tui_app *app, const char *argument, report *r) {
     if (code != STATUS_OK) return code;
     snprintf(s->shown[0], LEDGER_ID, "%s", id);
     s->shown_count = 1;
-    code = runs_read_detail(s, false, r);
+    code = read_detail(s, false, r);
     if (code == STATUS_OK) s->page = RUNS_DETAIL;
     app_log_argument(app, "%s", id);
     app->dirty = true;

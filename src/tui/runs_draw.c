@@ -25,7 +25,8 @@ static void format_span(double seconds, char text[RUNS_CELL]) {
     else snprintf(text, RUNS_CELL, "%" PRId64 ":%02" PRId64 ":%02" PRId64, whole / 3600, whole / 60 % 60, whole % 60);
 }
 
-void runs_format_cell(const run_column *c, int row, char text[RUNS_CELL]) {
+/* A cell as people read it. */
+static void format_cell(const run_column *c, int row, char text[RUNS_CELL]) {
     double number = c->number[row];
     bool own = c->kind == RUN_COLUMN_OWN;
     if (c->text[row]) snprintf(text, RUNS_CELL, "%s", c->text[row]);
@@ -57,7 +58,7 @@ static int column_width(const runs_state *s, const run_column *c, int rows) {
     int width = draw_width(title_of(s, c)) + 2;
     for (int i = s->top; i < s->top + rows && i < s->row_count; i++) {
         char text[RUNS_CELL];
-        runs_format_cell(c, s->rows[i], text);
+        format_cell(c, s->rows[i], text);
         int here = draw_width(text);
         if (here > width) width = here;
     }
@@ -112,7 +113,7 @@ static void draw_row(tui_app *app, const runs_state *s, tui_area line, int index
     for (int i = 0; i < count; i++) {
         const shown_column *c = &columns[i];
         char text[RUNS_CELL];
-        runs_format_cell(c->column, row, text);
+        format_cell(c->column, row, text);
         tui_area cell = {line.y, line.x + MARK_WIDTH + c->at, 1, c->width};
         tui_style style = here ? STYLE_BAR_STRONG : marked && c->index == 0 ? STYLE_STRONG : style_of(c->column, row);
         if (c->column->numeric) draw_right(&app->theme, cell, 0, c->width, style, text);

@@ -17,13 +17,14 @@ runs_state *runs_state_of(tui_app *app) {
 
 /* ---- which runs -------------------------------------------------------------------------------------------------- */
 
-const char *runs_chosen(const runs_state *s) {
+/* The run under the cursor; NULL when there is none. */
+static const char *chosen_run(const runs_state *s) {
     return s->table && s->cursor < s->row_count ? run_table_id(s->table, s->rows[s->cursor]) : NULL;
 }
 
 status runs_named(tui_app *app, runs_state *s, const char *argument, char id[LEDGER_ID], char folder[1024], report *r) {
     (void)app;
-    const char *name = argument[0] ? argument : s->page == RUNS_TABLE || s->shown_count == 0 ? runs_chosen(s) : s->shown[0];
+    const char *name = argument[0] ? argument : s->page == RUNS_TABLE || s->shown_count == 0 ? chosen_run(s) : s->shown[0];
     if (!s->l) return report_set(r, STATUS_INPUT, "%s", s->trouble);
     if (!name) return report_set(r, STATUS_INPUT, "There is no run here.");
     return ledger_resolve(s->l, name, id, folder, 1024, r);
@@ -40,7 +41,7 @@ bool runs_is_marked(const runs_state *s, const char *id) {
 }
 
 status runs_choose_shown(runs_state *s, int least, report *r) {
-    const char *chosen = runs_chosen(s);
+    const char *chosen = chosen_run(s);
     if (s->mark_count >= least) {
         memcpy(s->shown, s->marks, sizeof s->shown);
         s->shown_count = s->mark_count;
@@ -55,10 +56,11 @@ status runs_choose_shown(runs_state *s, int least, report *r) {
 
 /* ---- the table --------------------------------------------------------------------------------------------------- */
 
-status runs_arrange(runs_state *s, report *r) {
+/* Applies filter and sorting to the table as it is. */
+static status arrange(runs_state *s, report *r) {
     char kept[LEDGER_ID] = "";
     if (!s->table) return report_set(r, STATUS_INPUT, "%s", s->trouble);
-    if (runs_chosen(s)) snprintf(kept, sizeof kept, "%s", runs_chosen(s));
+    if (chosen_run(s)) snprintf(kept, sizeof kept, "%s", chosen_run(s));
     status code = run_table_filter(s->table, s->filter, s->rows, &s->row_count, r);
     if (code == STATUS_OK && s->sort[0]) code = run_table_sort(s->table, s->sort, s->descending, s->rows, s->row_count, r);
     if (code != STATUS_OK) return code;
@@ -86,7 +88,7 @@ static status read_table(tui_app *app, runs_state *s, report *r) {
     status code = s->l ? STATUS_OK : app_open_ledger(app, &s->l, r);
     if (code == STATUS_OK) code = run_table_read(s->l, &fresh, r);
     if (code != STATUS_OK) return code;
-    if (runs_chosen(s)) snprintf(kept, sizeof kept, "%s", runs_chosen(s));
+    if (chosen_run(s)) snprintf(kept, sizeof kept, "%s", chosen_run(s));
     if (!reserve_rows(s, run_table_rows(fresh))) {
         run_table_free(fresh);
         return report_set(r, STATUS_SYSTEM, "out of memory for the table of runs");
@@ -95,10 +97,10 @@ static status read_table(tui_app *app, runs_state *s, report *r) {
     s->table = fresh;
     int row = kept[0] ? run_table_find(fresh, kept) : -1; /* the old order's cursor, by name */
     s->row_count = 0;
-    code = runs_arrange(s, r);
+    code = arrange(s, r);
     if (code == STATUS_INPUT) { /* a filter by a column that is gone */
         s->filter[0] = s->sort[0] = '\0';
-        code = runs_arrange(s, r);
+        code = arrange(s, r);
     }
     for (int i = 0; i < s->row_count && row >= 0; i++)
         if (s->rows[i] == row) s->cursor = i;
@@ -224,7 +226,7 @@ status runs_choose(tui_app *app, const char *argument, report *r) {
 
 static bool cursor_of_runs(const tui_app *app, const void *state, char *action, size_t size) {
     const runs_state *s = state;
-    const char *chosen = runs_chosen(s);
+    const char *chosen = chosen_run(s);
     (void)app;
     if (s->page != RUNS_TABLE || !chosen) return false;
     snprintf(action, size, "choose %s", chosen);
@@ -238,11 +240,11 @@ status runs_filter(tui_app *app, const char *argument, report *r) {
     char before[sizeof s->filter];
     memcpy(before, s->filter, sizeof before);
     snprintf(s->filter, sizeof s->filter, "%s", argument);
-    status code = runs_arrange(s, r);
+    status code = arrange(s, r);
     if (code != STATUS_OK) {
         memcpy(s->filter, before, sizeof before);
         report unused;
-        (void)runs_arrange(s, &unused);
+        (void)arrange(s, &unused);
         return code;
     }
     s->page = RUNS_TABLE;
@@ -270,7 +272,7 @@ status runs_sort(tui_app *app, const char *argument, report *r) {
     s->descending = descending;
     app_log_argument(app, "%s%s", descending ? "-" : "", name);
     app->dirty = true;
-    return runs_arrange(s, r);
+    return arrange(s, r);
 }
 
 static int find_column(const runs_state *s, const char *name) {

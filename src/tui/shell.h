@@ -27,8 +27,6 @@ typedef struct tui_prompt {
 
 void prompt_open(tui_app *app, const char *text);
 void prompt_key(tui_app *app, int key);
-/* The index-th completion of what is typed, as a whole new text; false when there is none. */
-bool prompt_candidate(tui_app *app, const char *typed, int index, char *out, size_t size);
 void widget_prompt(tui_app *app, tui_area area);
 /* A row of candidates, above the prompt. */
 void widget_candidates(tui_app *app, tui_area area);
@@ -112,8 +110,6 @@ typedef struct tui_binding {
     char name[SHELL_NAME], argument[USER_TEXT]; /* name "": the key does nothing */
 } tui_binding;
 
-/* The code of a key's name; 0: not one. */
-int binding_key(const char *name);
 /* Reads config.lua and takes over what must be known before the screen opens; what is wrong is left in r. */
 void config_read(tui_app *app, user_config *c, report *r);
 /* Takes over the rest, and shows what was wrong. */

@@ -11,7 +11,7 @@
 
 static const char *const state_words[STATES] = {"not run", "started", "holds", "stops", "known limit", "FAILS"};
 
-stresses *stresses_of(tui_app *app) {
+static stresses *stresses_of(tui_app *app) {
     report unused;
     return screen_state(app, &screen_stress, &unused);
 }

@@ -32,8 +32,6 @@ typedef struct stresses {
     char said[CHILD_LINE];
 } stresses;
 
-stresses *stresses_of(tui_app *app);
-
 /* The word of a state as `sunder stress` says it. */
 const char *stress_state_word(stress_state state);
 

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-sweep_state *sweep_state_of(tui_app *app) {
+static sweep_state *state_of(tui_app *app) {
     report unused;
     return screen_state(app, &screen_sweep, &unused);
 }
@@ -169,7 +169,7 @@ static status load(tui_app *app, sweep_state *s, report *r) {
 
 /* The script under the cursor, or the one at hand whose path ends so. */
 static status open_script(tui_app *app, const char *argument, report *r) {
-    sweep_state *s = sweep_state_of(app);
+    sweep_state *s = state_of(app);
     if (s->going) return report_set(r, STATUS_INPUT, "A sweep is going on: S stops it.");
     size_t length = strlen(argument);
     bool found = length == 0;
@@ -189,7 +189,7 @@ static status open_script(tui_app *app, const char *argument, report *r) {
 
 /* What is under the cursor: a script, or of a grid a run's frames. The log has what that was. */
 static status choose(tui_app *app, const char *argument, report *r) {
-    sweep_state *s = sweep_state_of(app);
+    sweep_state *s = state_of(app);
     if (!s->loaded || argument[0]) return app_do(app, "sweep.open", argument, r);
     int run = sweep_run_at(s, s->at[0], s->at[1]);
     if (run < 0 || !s->cells[run].last.id[0]) return report_set(r, STATUS_INPUT, "There is no run here yet.");
@@ -198,7 +198,7 @@ static status choose(tui_app *app, const char *argument, report *r) {
 }
 
 static status run_sweep(tui_app *app, const char *argument, report *r) {
-    sweep_state *s = sweep_state_of(app);
+    sweep_state *s = state_of(app);
     char jobs[16];
     if (!s->loaded) return report_set(r, STATUS_INPUT, "Choose a sweep with enter first.");
     if (s->going) return report_set(r, STATUS_INPUT, "It is going on already: S stops it.");
@@ -209,7 +209,7 @@ static status run_sweep(tui_app *app, const char *argument, report *r) {
 }
 
 static status stop_sweep(tui_app *app, const char *argument, report *r) {
-    sweep_state *s = sweep_state_of(app);
+    sweep_state *s = state_of(app);
     (void)argument;
     if (!s->going) return report_set(r, STATUS_INPUT, "No sweep is going on.");
     child_stop(&s->child);
@@ -228,7 +228,7 @@ static void take_name(void *context, const char *name) {
 }
 
 static status choose_measure(tui_app *app, const char *argument, report *r) {
-    sweep_state *s = sweep_state_of(app);
+    sweep_state *s = state_of(app);
     static names known;
     known.count = 0;
     status code = s->l ? STATUS_OK : app_open_ledger(app, &s->l, r);
@@ -247,7 +247,7 @@ static status choose_measure(tui_app *app, const char *argument, report *r) {
 
 /* Another pair of axes: every axis across in turn, then every one down. */
 static status turn_axes(tui_app *app, const char *argument, report *r) {
-    sweep_state *s = sweep_state_of(app);
+    sweep_state *s = state_of(app);
     int n = s->plan.axis_count;
     (void)argument;
     if (!s->loaded || n < 2) return report_set(r, STATUS_INPUT, "There is no other pair of axes.");
@@ -262,7 +262,7 @@ static status turn_axes(tui_app *app, const char *argument, report *r) {
 
 /* The next combination of the axes that are not shown. */
 static status next_slice(tui_app *app, const char *argument, report *r) {
-    sweep_state *s = sweep_state_of(app);
+    sweep_state *s = state_of(app);
     (void)argument;
     if (!s->loaded || s->plan.axis_count < 3) return report_set(r, STATUS_INPUT, "All axes are shown.");
     for (int a = s->plan.axis_count - 1; a >= 0; a--) {
@@ -275,7 +275,7 @@ static status next_slice(tui_app *app, const char *argument, report *r) {
 }
 
 static status move_by(tui_app *app, int down, int across) {
-    sweep_state *s = sweep_state_of(app);
+    sweep_state *s = state_of(app);
     app->dirty = true;
     if (!s->loaded) {
         s->script = cursor_within(s->script + down, s->script_count);
@@ -310,7 +310,7 @@ static status go_right(tui_app *app, const char *argument, report *r) {
 }
 
 static status go_back(tui_app *app, const char *argument, report *r) {
-    sweep_state *s = sweep_state_of(app);
+    sweep_state *s = state_of(app);
     (void)argument;
     if (s->going) return report_set(r, STATUS_INPUT, "A sweep is going on: S stops it.");
     forget_plan(s);
@@ -319,7 +319,7 @@ static status go_back(tui_app *app, const char *argument, report *r) {
 }
 
 static bool complete_script(tui_app *app, const char *text, int index, char out[ACTION_ARGUMENT]) {
-    sweep_state *s = sweep_state_of(app);
+    sweep_state *s = state_of(app);
     for (int i = 0; i < s->script_count; i++)
         if (complete_word(s->scripts[i], text, &index, out)) return true;
     return false;

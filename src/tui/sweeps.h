@@ -32,8 +32,6 @@ typedef struct sweep_state {
     ledger *l;
 } sweep_state;
 
-sweep_state *sweep_state_of(tui_app *app);
-
 /* The run of the shown axes' values; −1 when there is none. */
 int sweep_run_at(const sweep_state *s, int down, int across);
 /* How many values an axis of the two has: 1 for none. */

@@ -105,7 +105,7 @@ struct session {
     session_sample sample;
     session_unfinished unfinished;
     double wall_start, wall, step_wall, last_frame_wall;
-    int64_t frames_written, steps_before; /* steps before this session: a resumed run counts only its own for speed */
+    int64_t steps_before; /* steps before this session: a resumed run counts only its own for speed */
     bool first_crack_told;
     char warning[512];
     status outcome;

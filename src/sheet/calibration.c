@@ -243,7 +243,6 @@ static status calibrate_interior(const sheet_definition *d, const sheet_plan *p,
     sheet_calibration *out = &n->calibration[body];
     *out = (sheet_calibration){.weight_sum = in.weight_sum, .neighbours = in.neighbours};
     out->stiffness = own_stiffness(b, p, in.weight_sum);
-    out->diffusivity = p->diffuses ? own_diffusivity(p, in.weight_sum, b->spacing * b->spacing) : 0;
     return calibrate_fracture(b, p, &in, out, r);
 }
 

@@ -91,7 +91,6 @@ typedef struct sheet_measures {
 typedef struct sheet_calibration {
     double weight_sum;       /* Σ W A inside */
     double stiffness;        /* c of an interior bond */
-    double diffusivity;      /* κ of an interior bond */
     double critical_stretch; /* η_c, trapping included; HUGE_VAL: does not break */
     double trapping;         /* what η_c was divided by */
     double toughness;        /* the G that it stands for */

@@ -22,7 +22,7 @@ struct simulation {
     solid_material materials[SOLID_MATERIALS];
     simulation_plan plan;
     double frame_time, dt_min, dt_max;
-    int64_t frame, steps, step_in_frame;
+    int64_t frame, steps;
     double time;
     double initial_energy;
     bool has_initial_energy;

@@ -354,7 +354,6 @@ status implicit_solve(solid *s, real dt, report *r) {
     double right, square, rho, next, curvature, unused;
     over_slots(s, prepare_slot, s);
     sum_slots(s, &right, &unused);
-    s->implicit_solves++;
     if (right == 0) { /* nothing drives and nothing is damaged: d = 0 is the solution */
         over_slots(s, no_spread_slot, s);
         return STATUS_OK;
@@ -376,7 +375,6 @@ status implicit_solve(solid *s, real dt, report *r) {
         c.factor = (real)(next / rho);
         rho = next;
         over_slots(s, turn_slot, &c);
-        s->implicit_iterations++;
     }
     over_slots(s, spread_slot, s);
     return STATUS_OK;

@@ -31,11 +31,6 @@ SIMD_INLINE void records_load(const real *records, int first, int slot, vec *col
     }
 }
 
-/* Writes lanes of `value` into column `slot` of the records of a part. */
-SIMD_INLINE void record_put(real *records, int first, int slot, vec value) {
-    for (int lane = 0; lane < VEC_LANES; lane++) records[(first + lane) * RECORD + slot] = value[lane];
-}
-
 /* Weights and places of a tile's particles, as a gather wants them. */
 SIMD_INLINE void kernel_records(const solid *s, const solid_tile *tile, real *records, kernel_kind kernel) {
     for (int k = 0; k < tile->pack_count; k++)

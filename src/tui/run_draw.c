@@ -11,7 +11,6 @@ enum {
     TWO_PANELS = 140,   /* columns from which there are two: numbers, and the one that was chosen */
     ALL_PANELS = 160,   /* and with as many rows as below: all of them */
     ALL_ROWS = 44,
-    WHOLE_COLUMNS = 50, /* a panel that has the screen to itself is cut into columns of so many */
 };
 
 timeline run_timeline(const tui_app *app, const run_state *state) {

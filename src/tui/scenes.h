@@ -17,7 +17,6 @@ typedef struct scenes_state {
     bool typing;      /* the filter */
     bool on_settings; /* the cursor is on the settings, not on the list */
     int parameter;    /* 0: the recipe, then what the scene declares */
-    int preview_scroll;
 
     char recipe[LIBRARY_NAME]; /* "" for the scene's own */
     char settings[SCENES_SETTINGS][SCENES_SETTING]; /* "KEY=VALUE" */

@@ -47,7 +47,6 @@ static void changed(tui_app *app, scenes_state *s) {
     s->asked[0] = '\0';
     s->ask_at = clock_seconds() + settle_time;
     s->asked_plan = false;
-    s->preview_scroll = 0;
     app->dirty = true;
 }
 

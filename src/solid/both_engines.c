@@ -8,6 +8,15 @@
 #define ADDRESS(name) &SOLID_EFFECT(name),
 const effect *const solid_effects[SOLID_EFFECTS] = {SOLID_EFFECT_LIST(ADDRESS)};
 
+void solid_define(solid *s, const solid_definition *definition) {
+    s->definition = *definition;
+    s->effects = solid_effects;
+    s->effect_count = SOLID_EFFECTS;
+    s->mask = definition->effect_mask;
+    s->threads = definition->threads > 0 ? definition->threads : 1;
+    s->count = definition->count;
+}
+
 void solid_constants_refresh(solid *s) {
     s->implicit_tolerance = s->constraint.tolerance = 1;
     for (int m = 0; m < s->definition.material_count; m++) {

@@ -109,12 +109,7 @@ static solid *create(const solid_definition *definition, report *r) {
         report_set(r, STATUS_SYSTEM, "out of memory for the solid engine");
         return NULL;
     }
-    s->definition = *definition;
-    s->effects = solid_effects;
-    s->effect_count = SOLID_EFFECTS;
-    s->mask = definition->effect_mask;
-    s->threads = definition->threads > 0 ? definition->threads : 1;
-    s->count = definition->count;
+    solid_define(s, definition);
     plan_fields(s);
     solid_constants_refresh(s);
     s->workers = memory_allocate_array((size_t)s->threads, sizeof *s->workers);

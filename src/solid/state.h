@@ -363,6 +363,7 @@ int solid_read(const solid *s, const char *field, double *out);
 status solid_save(const solid *s, record_list *list, report *r);
 status solid_restore(solid *s, const record_list *list, report *r);
 /* both_engines.c: what they do alike, as struct solid_engine documents it */
+void solid_define(solid *s, const solid_definition *definition); /* what an engine is made from, before anything is reserved */
 void solid_constants_refresh(solid *s);
 solid_boundary *solid_boundaries(solid *s);
 void solid_limits(const solid *s, double *limit);

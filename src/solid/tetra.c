@@ -205,12 +205,7 @@ static solid *create(const solid_definition *definition, report *r) {
         return NULL;
     }
     solid *s = &m->base;
-    s->definition = *definition;
-    s->effects = solid_effects;
-    s->effect_count = SOLID_EFFECTS;
-    s->mask = definition->effect_mask;
-    s->threads = definition->threads > 0 ? definition->threads : 1;
-    s->count = definition->count;
+    solid_define(s, definition);
     solid_constants_refresh(s);
     s->workers = memory_allocate_array((size_t)s->threads, sizeof *s->workers);
     m->piola = memory_allocate_array((size_t)s->threads * TILE_PACKS * 9 * PACK, sizeof *m->piola);

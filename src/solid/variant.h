@@ -19,6 +19,7 @@
 #define solid_tetra_table SOLID_VARIANT(solid_tetra_table)
 #define solid_stage_names SOLID_VARIANT(solid_stage_names)
 #define solid_effects SOLID_VARIANT(solid_effects)
+#define solid_define SOLID_VARIANT(solid_define)
 #define solid_boundaries SOLID_VARIANT(solid_boundaries)
 #define solid_limits SOLID_VARIANT(solid_limits)
 #define solid_surround SOLID_VARIANT(solid_surround)

@@ -97,6 +97,13 @@ int draw_format(const tui_theme *theme, tui_area area, int row, int column, tui_
     return draw_text(theme, area, row, column, style, text);
 }
 
+void draw_cut(const tui_theme *theme, tui_area area, int row, int column, tui_style style, const char *text) {
+    bool fits = column + draw_width(text) <= area.width;
+    tui_area rest = {area.y, area.x, area.height, area.width - !fits};
+    int end = draw_text(theme, rest, row, column, style, text);
+    if (!fits) draw_text(theme, area, row, end, style, "…");
+}
+
 void draw_right(const tui_theme *theme, tui_area area, int row, int column, tui_style style, const char *text) {
     int start = column - draw_width(text);
     draw_text(theme, area, row, start < 0 ? 0 : start, style, text);

@@ -21,6 +21,9 @@ int draw_text(const tui_theme *theme, tui_area area, int row, int column, tui_st
 int draw_format(const tui_theme *theme, tui_area area, int row, int column, tui_style style, const char *format, ...)
     __attribute__((format(printf, 6, 7)));
 
+/* As draw_text, but what does not fit ends in "…". */
+void draw_cut(const tui_theme *theme, tui_area area, int row, int column, tui_style style, const char *text);
+
 /* As draw_text, but ending before `column`. */
 void draw_right(const tui_theme *theme, tui_area area, int row, int column, tui_style style, const char *text);
 

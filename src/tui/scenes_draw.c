@@ -110,7 +110,7 @@ static void setting_row(page *p, const scenes_state *s, int index, const char *n
             draw_text(&p->app->theme, a, p->row, 1, STYLE_DIM, name);
             draw_text(&p->app->theme, a, p->row, 1 + NAME, mine ? STYLE_WARN : STYLE_STRONG, value);
             int column = 1 + NAME + (draw_width(value) >= VALUE ? draw_width(value) + 1 : VALUE);
-            draw_text(&p->app->theme, a, p->row, column, STYLE_DIM, remark);
+            draw_cut(&p->app->theme, a, p->row, column, STYLE_DIM, remark);
         }
     }
     p->row++;

@@ -14,6 +14,7 @@ def listed(s):
 def moves(s):
     listed(s)
     s.shows(r"│ ?Tube pull", r"contains ─", r"effects ─")
+    s.shows(r"pull +0\.1 +length/time, speed of e.*…$")  # what does not fit says so
     s.keys("Up")
     s.wait(r"solid/tube_compress\.lua")
     s.keys("Down")

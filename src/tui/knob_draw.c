@@ -86,12 +86,21 @@ static void range_text(const knob *k, char *text, size_t size) {
     snprintf(text, size, "%s … %s  default %s  start %s", low[0] ? low : "-", high[0] ? high : "-", fallback, start);
 }
 
+/* The end of a path that fits beside the unit: "tube.damage.eta", "damage.eta" or "eta". */
+static const char *fitting_path(const knob *k, const char *unit, int width) {
+    const char *name = k->path, *dot;
+    int note = unit ? draw_width(unit) + 2 : 1;
+    while (draw_width(name) + note > width && (dot = strchr(name, '.')) != NULL) name = dot + 1;
+    return name;
+}
+
 /* Name and unit, doc, range, and whether it acts at once. */
 static void draw_detail(const knob_panel *panel, tui_theme *theme, tui_area area) {
     const knob *k = knob_panel_current(panel);
     if (!k) return;
     char text[512], value[KNOB_TEXT];
-    draw_heading(theme, area, 0, k->path, k->unit[0] && strcmp(k->unit, "1") != 0 ? k->unit : NULL);
+    const char *unit = k->unit[0] && strcmp(k->unit, "1") != 0 ? k->unit : NULL;
+    draw_heading(theme, area, 0, fitting_path(k, unit, area.width), unit);
     int row = 1;
     if (k->components > 1) {
         knob_show(k, k->value, value);
@@ -100,9 +109,10 @@ static void draw_detail(const knob_panel *panel, tui_theme *theme, tui_area area
     }
     row += draw_paragraph(theme, area, row, area.height - row - 2, STYLE_TEXT, k->doc);
     range_text(k, text, sizeof text);
-    row += draw_paragraph(theme, area, row, area.height - row - 1 > 2 ? 2 : 1, STYLE_DIM, text);
+    int reason = k->live ? 1 : 2; /* what is said below takes as many rows */
+    row += draw_paragraph(theme, area, row, area.height - row - reason >= 2 ? 2 : 1, STYLE_DIM, text);
     if (k->derived) {
-        draw_paragraph(theme, area, row, area.height - row, STYLE_DIM, "follows from its twin; turning it makes that follow");
+        draw_paragraph(theme, area, row, area.height - row, STYLE_DIM, "follows its twin until it is turned");
     } else if (k->live) {
         draw_paragraph(theme, area, row, 1, STYLE_GOOD, "live: acts at the next frame");
     } else {

@@ -44,7 +44,7 @@ def panels(s):
 @covers("run.knob-up", "run.knob-down", "run.knob-page-up", "run.knob-page-down", "run.knob", "run.knob-other")
 def cursor(s):
     s.paused().keys("Down")  # the first press shows the knobs
-    s.shows(r"▸sigma_c", r"follows")  # the first that is live
+    s.shows(r"▸sigma_c", r"damage\.sigma_c ─* ?mass/", r"follows", r"│ +3\.196e\+04 *$")  # the first that is live
     s.keys("Up")
     s.shows(r"▸density", r"particles got their masses from it")
     s.keys("Down")

@@ -180,6 +180,7 @@ def workbench_stress(screen):
     screen.wait(r"\[Scenes\]")
     do(screen, "screen stress")
     screen.wait(r"not run")
+    screen.wait(r"looking$", absent=True)
     do(screen, "stress.run broken cfl contrast crush directions domain inversion sheet_crumple")
     screen.wait("The hard cases have ended", patience=120)
     for _ in range(13):

@@ -2,10 +2,11 @@
 
 A file's functions named test_… are its tests; arguments after the program choose some, with or without that beginning.
 """
-import json, os, shutil, sqlite3, subprocess, sys, tempfile, traceback
+import glob, json, os, shutil, sqlite3, subprocess, sys, tempfile, time, traceback
 
 SUNDER = os.path.abspath(sys.argv[1])
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+ENDLESS = ["--frames", "1000000"]  # no machine comes to the end of it within a test: who is to be stopped under way is under way
 failures, done = [], 0
 
 
@@ -57,6 +58,38 @@ class Box:
     def rows(self, sql, *values):
         with sqlite3.connect(self.db) as connection:
             return connection.execute(sql, values).fetchall()
+
+    def stop_after(self, number, frame, *arguments):
+        """Starts an endless run, sends it a signal when it has written a frame (some more may be there by then), and returns its exit code and
+        its folder."""
+        before = self.rows("SELECT count(*) FROM runs")[0][0] if os.path.exists(self.db) else 0
+        process = self.start_run(*arguments, *ENDLESS)
+        folder = None
+        while process.poll() is None and not (folder and frame in frames_of(folder)):
+            time.sleep(0.005)
+            if folder is None:
+                folder = self.output_of(before)
+        process.send_signal(number)
+        process.communicate()
+        return process.returncode, folder
+
+    def output_of(self, place):
+        """The folder of the run at this place of the ledger; None as long as there is none."""
+        try:
+            found = self.rows("SELECT output FROM runs ORDER BY run LIMIT 1 OFFSET ?", place)
+        except sqlite3.OperationalError:  # the ledger is being made
+            return None
+        return found[0][0] if found else None
+
+
+def frames_of(folder):
+    """Numbers of the frames that a run has written."""
+    return [int(os.path.basename(f)[:6]) for f in sorted(glob.glob(os.path.join(folder, "frames", "[0-9]*.hdf")))]
+
+
+def checkpoints_of(folder):
+    """Numbers of the frames that a run can go on from."""
+    return sorted(int(f[-10:-4]) for f in glob.glob(os.path.join(folder, "checkpoint-*.hdf")))
 
 
 def run_tests(names, *arguments):

@@ -130,31 +130,33 @@ def test_a_budget_takes_the_finest_away():
     with Box() as box:
         words = [PULL, *SMALL, "--axis", "resolution", "--levels", "9", "--list"]
         whole = box.study(*words)
-        less = box.study(*words, "--budget", str(whole["predicted_s"] / 2))
+        # What runs cost is measured by a few steps, and twice what was measured at first may be measured next: in the middle between the whole study and
+        # the scene's own run, thousands of times cheaper, there is room for that.
+        less = box.study(*words, "--budget", str(whole["predicted_s"] / 60))
         values = [[float(level["value"]) for level in axis(s, "resolution")["levels"] if level["status"] == "not started"] for s in (whole, less)]
         check(max(values[1]) < max(values[0]), f"the finest level is left out: {values}")
         check(any("left out by the budget: particles" in note for note in less["notes"]), f"and that is said: {less['notes']}")
-        check(less["predicted_s"] <= whole["predicted_s"] / 2, "the budget holds")
+        check(less["predicted_s"] <= whole["predicted_s"] / 60, "the budget holds")
         err = box.ends(2, "accuracy", *words, "--budget", "1e-9")[1]
         check("--budget: expected at least" in err, f"one that not even the scene's own run fits: {err}")
 
 
 def test_an_interrupted_study_goes_on():
     with Box() as box:
-        words = [PULL, *SMALL[:-1], "30", "--axis", "resolution", "--threads", "1"]
-        process = box.start("accuracy", *words)
-        for line in process.stdout:
-            if line.startswith("2/3  started"):
-                break
-        while box.rows("SELECT count(*) FROM runs") < [(2,)]:
+        # All but the scene's own run take half a minute, in frames short enough to be stopped between.
+        steps = 'title = "Bar", dt = p.particles ~= 200 and 3e-7 or 5e-3'
+        scene = box.write("bar.lua", BAR.replace("fps = 10, dt = 5e-3", "fps = 100").replace('title = "Bar"', steps))
+        process = box.start("accuracy", scene, "--axis", "resolution", "--threads", "1")
+        while process.poll() is None and not (box.output_of(1) and [row[0] for row in box.rows("SELECT status FROM runs ORDER BY run")] == ["done", "running"]):
             time.sleep(0.01)
         process.send_signal(signal.SIGINT)
-        err = process.communicate(timeout=120)[1]
+        err = process.communicate()[1]
         check(process.returncode == 130 and "interrupted" in err, f"interrupted: {process.returncode} {err}")
         states = [row[0] for row in box.rows("SELECT status FROM runs ORDER BY run")]
         check(states == ["done", "interrupted"], f"what is done is kept, the third is not begun: {states}")
-        study = box.study(*words)
-        check(study["done"] == 2 and study["done_before"] == 1, "it goes on from there")
+        levels = axis(box.study(scene, "--axis", "resolution", "--list"), "resolution")["levels"]
+        states = {level["value"]: level["status"] for level in levels}
+        check(states == {"100": "not started", "200": "done before", "400": "not started"}, f"it would go on from there: {states}")
 
 
 def test_tables_for_people_and_programs():

@@ -5,10 +5,10 @@ A run with turns has the same bits as any other that was given them: on other th
 
 Usage: test_turns.py SUNDER [NAME...]   Each test works in a folder and with a ledger of its own.
 """
-import glob, json, os, shutil, signal, time
+import glob, json, os, shutil, signal
 
 import harness
-from harness import SOURCE, check, run_tests
+from harness import SOURCE, check, checkpoints_of, frames_of, run_tests
 
 PULL = os.path.join(SOURCE, "scenes/solid/tube_pull.lua")
 TOWEL = os.path.join(SOURCE, "scenes/sheet/paper_towel.lua")
@@ -27,14 +27,6 @@ class Box(harness.Box):
 
 def turned(turns):
     return [word for turn in turns for word in ("--turn", turn)]
-
-
-def frames_of(result):
-    return [int(os.path.basename(f)[:6]) for f in sorted(glob.glob(os.path.join(result["out"], "frames", "[0-9]*.hdf")))]
-
-
-def checkpoints_of(folder):
-    return sorted(int(f[-10:-4]) for f in glob.glob(os.path.join(folder, "checkpoint-*.hdf")))
 
 
 def test_turns_give_the_same_bits_on_any_number_of_threads():
@@ -61,31 +53,37 @@ def test_turns_are_told():
         check([e[0] for e in events] == [2, 2, 4, 5] and "tube.damage.eta: " in events[0][1] and events[0][1].endswith("-> 0.01"), f"events: {events}")
 
 
-def kill_after(box, frame, *arguments):
-    """Starts a run, kills it once it has written a frame, and returns its id."""
-    before = box.rows("SELECT count(*) FROM runs")[0][0]
-    process = box.start_run(*arguments)
-    deadline = time.time() + 120
-    while time.time() < deadline and process.poll() is None:
-        row = box.rows("SELECT output FROM runs ORDER BY run LIMIT 1 OFFSET ?", before)
-        if row and os.path.exists(os.path.join(row[0][0], "frames", f"{frame:06d}.hdf")):
-            break
-        time.sleep(0.002)
-    process.send_signal(signal.SIGKILL)
-    process.wait()
-    return box.rows("SELECT id FROM runs ORDER BY run LIMIT 1 OFFSET ?", before)[0][0]
+class Whole:
+    """Hashes of a run that was never stopped, at any frame."""
+
+    def __init__(self, box, *arguments):
+        self.box, self.arguments, self.hashes = box, arguments, {}
+
+    def __getitem__(self, frame):
+        if frame not in self.hashes:
+            self.hashes[frame] = self.box.good(*self.arguments, "--frames", str(frame))["state_hash"]
+        return self.hashes[frame]
+
+
+def killed_and_resumed(box, frame, target, *arguments):
+    """Kills a run once it has written a frame, and lets it go on up to frame `target`, or one beyond the last that was written."""
+    code, folder = box.stop_after(signal.SIGKILL, frame, *arguments)
+    check(code == -signal.SIGKILL, f"it was under way: {code}")
+    target = max(target, frames_of(folder)[-1] + 1)
+    again = box.good("--resume", os.path.basename(folder), "--threads", "1", "--frames", str(target - checkpoints_of(folder)[-1]))
+    check(frames_of(again["out"]) == list(range(target + 1)), f"frames after a kill, up to {target}: {frames_of(again['out'])}")
+    return again, target
 
 
 def test_a_killed_run_goes_on_with_its_turns():
     with Box() as box:
         for scene, settings, turns, precision in ((PULL, SMALL, TURNS, "f32"), (PULL, SMALL, TURNS, "f64"), (TOWEL, WET, WET_TURNS, "f32")):
-            base = [scene, *settings, "--frames", "8", *turned(turns), "--precision", precision]
-            whole = box.good(*base)
+            base = [scene, *settings, *turned(turns), "--precision", precision]
+            whole = Whole(box, *base)
             for frame in (1, 3, 5):
-                run = kill_after(box, frame, *base, "--threads", "2")
-                again = box.good("--resume", run, "--threads", "1")
-                check(again["state_hash"] == whole["state_hash"], f"{os.path.basename(scene)} {precision}: killed after frame {frame}")
-                check(frames_of(again) == list(range(9)), f"frames after a kill: {frames_of(again)}")
+                again, target = killed_and_resumed(box, frame, 8, *base, "--threads", "2")
+                run = again["run_id"]
+                check(again["state_hash"] == whole[target], f"{os.path.basename(scene)} {precision}: killed after frame {frame}")
                 check(box.rows("SELECT count(*) FROM knob_turns JOIN runs USING (run) WHERE id = ?", run)[0][0] == len(turns), "the turns' rows after a kill")
                 check(box.rows("SELECT count(*) FROM events JOIN runs USING (run) WHERE id = ? AND kind = 'knob'", run)[0][0] == len(turns), "each turn is told once")
 
@@ -96,7 +94,7 @@ def test_a_resumed_run_takes_further_turns():
         part = box.good(PULL, *SMALL, "--frames", "3", *turned(TURNS[:2]))
         code, _, err = box.run("--resume", part["run_id"], "--frames", "5", *turned(["2:eta=0.5"]))
         check(code == 2 and "from 3" in err, f"a turn in the past of a resumed run: {code} {err}")
-        check(frames_of(part) == [0, 1, 2, 3] and checkpoints_of(part["out"])[-1] == 3, "what was refused has touched nothing")
+        check(frames_of(part["out"]) == [0, 1, 2, 3] and checkpoints_of(part["out"])[-1] == 3, "what was refused has touched nothing")
         again = box.good("--resume", part["run_id"], "--frames", "5", *turned(TURNS[2:]))
         check(again["state_hash"] == whole["state_hash"], "turns given when it was resumed")
         # Without its list a run still knows what had acted.
@@ -119,7 +117,7 @@ def test_a_branch_is_its_parent():
                 branch = box.good("--branch", f"{parent['run_id']}@{frame}", "--threads", "1")
                 check(branch["state_hash"] == parent["state_hash"], f"a branch at {frame} without turns of its own")
                 check(branch["parent"] == parent["run_id"] and branch["parent_frame"] == frame and branch["run_id"] != parent["run_id"], "its own row")
-                check(frames_of(branch) == list(range(8)), f"frames of a branch at {frame}: {frames_of(branch)}")
+                check(frames_of(branch["out"]) == list(range(8)), f"frames of a branch at {frame}: {frames_of(branch['out'])}")
                 row = box.rows("SELECT parent, parent_frame, scene_path FROM runs WHERE id = ?", branch["run_id"])[0]
                 check(row == (parent["run_id"], frame, scene), f"row of a branch: {row}")
                 counts = {run: box.rows("SELECT frame, kinetic.value FROM frames JOIN runs USING (run) JOIN run_measures AS kinetic USING (run, frame) JOIN measures USING (measure) "
@@ -150,18 +148,16 @@ def test_a_branch_finds_its_way_from_an_older_checkpoint():
 
 def test_a_killed_branch_goes_on():
     with Box() as box:
-        base = [PULL, *SMALL, "--frames", "9"]
-        straight = box.good(*base, *turned(TURNS))
-        parent = box.good(*base, *turned(TURNS[:2]), "--checkpoint-every", "4", "--keep", "all")
+        base = [PULL, *SMALL]
+        whole = Whole(box, *base, *turned(TURNS))
+        parent = box.good(*base, *turned(TURNS[:2]), "--frames", "9", "--checkpoint-every", "4", "--keep", "all")
         before = sorted((f, os.path.getmtime(os.path.join(parent["out"], f))) for f in ["result.json"] + [f"frames/{k:06d}.hdf" for k in range(10)])
         for frame in (4, 5, 7):
-            run = kill_after(box, frame, "--branch", f"{parent['run_id']}@3", *turned(TURNS[2:]))
-            check(run != parent["run_id"], "the branch was killed")
-            again = box.good("--resume", run)
-            check(again["state_hash"] == straight["state_hash"], f"a branch killed after frame {frame}")
-            check(frames_of(again) == list(range(10)), f"frames of a killed branch: {frames_of(again)}")
+            again, target = killed_and_resumed(box, frame, 9, "--branch", f"{parent['run_id']}@3", *turned(TURNS[2:]))
+            check(again["run_id"] != parent["run_id"], "the branch was killed")
+            check(again["state_hash"] == whole[target], f"a branch killed after frame {frame}")
         after = sorted((f, os.path.getmtime(os.path.join(parent["out"], f))) for f in ["result.json"] + [f"frames/{k:06d}.hdf" for k in range(10)])
-        check(before == after and frames_of(parent) == list(range(10)), "the parent's folder is as it was")
+        check(before == after and frames_of(parent["out"]) == list(range(10)), "the parent's folder is as it was")
 
 
 def test_the_ring_of_checkpoints():

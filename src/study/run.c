@@ -14,12 +14,14 @@ typedef struct job {
 static session *volatile going[STUDY_JOBS];
 static volatile sig_atomic_t stopped;
 
-/* The request stores to an atomic: safe in a handler. */
+/* Both requests store to an atomic: safe in a handler. */
 void study_stop(void) {
+    bool again = stopped;
     stopped = 1;
     for (int i = 0; i < STUDY_JOBS; i++) {
         session *s = going[i];
-        if (s) session_stop(s);
+        if (s && again) session_abandon(s);
+        else if (s) session_stop(s);
     }
 }
 

@@ -45,7 +45,8 @@ typedef void (*study_teller)(void *context, int index, const study_result *resul
  * study_stop: those going on end after their frame, the others never begin, and STATUS_INTERRUPTED is returned. Other errors: none. */
 status study_runs_make(const study_common *common, const study_request *requests, study_result *results, int count, study_teller tell, void *context, report *r);
 
-/* Stops the study that is going on in this process; may be called from a signal handler and from any thread. */
+/* Stops the study that is going on in this process, after the frames that are being made; a second call, after their steps. May be called from a
+ * signal handler and from any thread. */
 void study_stop(void);
 bool study_stopped(void);
 

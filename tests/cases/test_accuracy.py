@@ -30,7 +30,6 @@ return s.scene { title = "Film", sheets = { { shape = s.rectangle { size = { 2, 
   velocity = function(x, y, z) return 0.05 * math.sin(math.pi * x / 2), 0, 0 end } } }
 """
 
-
 class Box(harness.Box):
     def write(self, name, text):
         with open(self.path(name), "w", encoding="utf-8") as file:
@@ -141,14 +140,19 @@ def test_a_budget_takes_the_finest_away():
         check("--budget: expected at least" in err, f"one that not even the scene's own run fits: {err}")
 
 
+def second_run_under_way(box, dt):
+    """A study whose other runs than the scene's own have this step; the process when the first of them is under way, and the scene."""
+    steps = f'title = "Bar", dt = p.particles ~= 200 and {dt} or 5e-3'
+    scene = box.write("bar.lua", BAR.replace("fps = 10, dt = 5e-3", "fps = 100").replace('title = "Bar"', steps))
+    process = box.start("accuracy", scene, "--axis", "resolution", "--threads", "1")
+    while process.poll() is None and not (box.output_of(1) and [row[0] for row in box.rows("SELECT status FROM runs ORDER BY run")] == ["done", "running"]):
+        time.sleep(0.01)
+    return process, scene
+
+
 def test_an_interrupted_study_goes_on():
     with Box() as box:
-        # All but the scene's own run take half a minute, in frames short enough to be stopped between.
-        steps = 'title = "Bar", dt = p.particles ~= 200 and 3e-7 or 5e-3'
-        scene = box.write("bar.lua", BAR.replace("fps = 10, dt = 5e-3", "fps = 100").replace('title = "Bar"', steps))
-        process = box.start("accuracy", scene, "--axis", "resolution", "--threads", "1")
-        while process.poll() is None and not (box.output_of(1) and [row[0] for row in box.rows("SELECT status FROM runs ORDER BY run")] == ["done", "running"]):
-            time.sleep(0.01)
+        process, scene = second_run_under_way(box, 3e-7)  # half a minute, in frames short enough to be stopped between
         process.send_signal(signal.SIGINT)
         err = process.communicate()[1]
         check(process.returncode == 130 and "interrupted" in err, f"interrupted: {process.returncode} {err}")
@@ -157,6 +161,19 @@ def test_an_interrupted_study_goes_on():
         levels = axis(box.study(scene, "--axis", "resolution", "--list"), "resolution")["levels"]
         states = {level["value"]: level["status"] for level in levels}
         check(states == {"100": "not started", "200": "done before", "400": "not started"}, f"it would go on from there: {states}")
+
+
+def test_a_second_interruption_does_not_wait_for_the_frame():
+    with Box() as box:
+        process, _ = second_run_under_way(box, 1e-10)  # a frame takes half an hour
+        process.send_signal(signal.SIGINT)
+        time.sleep(0.2)
+        check(process.poll() is None, "the first waits for it")
+        while process.poll() is None:
+            process.send_signal(signal.SIGINT)  # again: two that come before it has looked at one are one
+            time.sleep(0.1)
+        process.communicate()
+        check(process.returncode == 130, f"interrupted: {process.returncode}")
 
 
 def test_tables_for_people_and_programs():

@@ -43,6 +43,8 @@ static demo_options parse(int argc, char **argv) {
             o.fake.frames = (int64_t)number(argc, argv, &i);
         else if (strcmp(name, "--frame-ms") == 0)
             o.fake.frame_seconds = number(argc, argv, &i) / 1000;
+        else if (strcmp(name, "--hold") == 0)
+            o.fake.hold = i + 1 < argc ? argv[++i] : NULL;
         else if (strcmp(name, "--fail-at") == 0)
             o.fake.fail_at = (int64_t)number(argc, argv, &i);
         else if (strcmp(name, "--exit-after") == 0)

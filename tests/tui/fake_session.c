@@ -15,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 enum { STEPS_A_FRAME = 40 };
 
@@ -155,6 +156,7 @@ static void simulate_frame(session *s, int64_t frame) {
     if (frame == s->options.crash_at) raise(s->options.crash_signal);
     for (int i = 0; i < STEPS_A_FRAME && !atomic_load(&s->abandon); i++)
         sleep_for(s->options.frame_seconds / STEPS_A_FRAME);
+    while (s->options.hold && access(s->options.hold, F_OK) == 0 && !atomic_load(&s->abandon)) sleep_for(0.005);
 }
 
 static void *run(void *argument) {

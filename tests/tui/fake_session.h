@@ -7,6 +7,7 @@
 typedef struct fake_options {
     int64_t particles, frames;
     double frame_seconds; /* wall time of one frame */
+    const char *hold;     /* a file: as long as it exists, no frame but the initial one is finished; NULL: none */
     int64_t fail_at;      /* frame at which it diverges; −1: never */
     int64_t crash_at;     /* frame at which the simulating thread raises crash_signal; −1: never */
     int crash_signal;

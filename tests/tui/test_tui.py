@@ -10,6 +10,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 
 import terminal
@@ -214,20 +215,34 @@ def test_failure_is_told():
         s.finished(1, outcome=1)
 
 
+def held(function):
+    """A run whose frame is not finished before the file is gone."""
+    with tempfile.NamedTemporaryFile(prefix="sunder-hold-", delete=False) as file:
+        pass
+    try:
+        with demo(f"--frames 500 --frame-ms 20 --particles 500 --hold {file.name}") as s:
+            function(s.running(), file.name)
+            s.finished(130, outcome=4)
+    finally:
+        if os.path.exists(file.name):
+            os.remove(file.name)
+
+
 def test_ctrl_c_finishes_the_frame():
-    with demo("--frames 500 --frame-ms 4000 --particles 500") as s:
-        s.running().keys("C-c")
+    def stop(s, hold):
+        s.keys("C-c")
         s.wait(r"stopping *$")
         s.wait(r"Finishing the frame")
-        s.finished(130, outcome=4)
+        os.remove(hold)
+    held(stop)
 
 
 def test_second_ctrl_c_abandons_it():
-    with demo("--frames 500 --frame-ms 200000 --particles 500") as s:  # a frame takes ten times PATIENCE
-        s.running().keys("C-c")
+    def stop(s, _):
+        s.keys("C-c")
         s.wait(r"stopping *$")
         s.keys("C-c")
-        s.finished(130, outcome=4)
+    held(stop)
 
 
 def test_ctrl_c_while_paused_and_at_the_end():

@@ -275,7 +275,6 @@ def a_sweep_fills_its_grid(s):
     s.wait(r"Little .*0 done +of 12$")
     s.wait(r"break_stretch +0\.02, 0\.3")
     s.keys("r")
-    s.wait(r"running")
     s.wait(r"12 done +of 12$", patience=120)
     s.do("sweep.measure damage_max")
     s.wait(r"damage_max +of the last frame: break_stretch down, eta across")

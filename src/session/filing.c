@@ -5,6 +5,15 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
+
+/* Of solids and sheets together; NaN where nothing diffuses. */
+static double diffused_total(const session *s, const simulation_measures *all) {
+    const simulation_plan *p = simulation_get_plan(s->simulation);
+    for (int e = 0; e < p->effect_count; e++)
+        if ((p->mask >> e & 1) && strcmp(p->effects[e]->name, "diffusion") == 0) return all->solid.diffused_total + (all->has_sheet ? all->sheet.diffused_total : 0);
+    return NAN;
+}
 
 static void log_frame(session *s, const filing_work *w) {
     const simulation_measures *all = &w->measures;
@@ -24,7 +33,7 @@ static void log_frame(session *s, const filing_work *w) {
         {"angular_momentum_z", m->angular_momentum[2]},
         {"grip_impulse_x", m->grip_impulse[0]}, {"grip_impulse_y", m->grip_impulse[1]}, {"grip_impulse_z", m->grip_impulse[2]},
         {"bond_stretch_max", all->has_sheet ? all->sheet.stretch_max : NAN},
-        {"diffused_total", all->has_sheet ? all->sheet.diffused_total : NAN},
+        {"diffused_total", diffused_total(s, all)},
     };
     report r;
     pthread_mutex_lock(&s->ledger_lock);

@@ -74,30 +74,35 @@ static void measure_moments(const record_list *list, double out[6]) {
     for (int c = 0; c < 3; c++) out[c] = sum[c] / count, out[3 + c] = high[c] - low[c];
 }
 
-static void measure_field(const record *a, double out[2]) {
-    double sum = 0, squares = 0;
-    for (int64_t i = 0; i < a->count; i++) {
-        double x = element(a, i);
-        sum += x, squares += x * x;
+/* Mean and root mean square of a field over all particles that have it; whether any has. */
+static bool measure_field(const record_list *list, const char *field, double out[2]) {
+    double sum = 0, squares = 0, count = 0;
+    for (int k = 0; k < 2; k++) {
+        char name[RECORD_NAME];
+        snprintf(name, sizeof name, "%s/%s", k ? "sheet" : "solid", field);
+        const record *a = record_find(list, name);
+        for (int64_t i = 0; a && i < a->count; i++, count++) {
+            double x = element(a, i);
+            sum += x, squares += x * x;
+        }
     }
-    out[0] = sum / (double)a->count, out[1] = sqrt(squares / (double)a->count);
+    out[0] = sum / count, out[1] = sqrt(squares / count);
+    return count > 0;
 }
 
 static void take_frame(accuracy_study *s, accuracy_run *run, int frame, const record_list *list) {
     double out[6];
     for (int m = 0; m < s->measure_count; m++) {
         const accuracy_measure *measure = &s->measures[m];
-        const record *field = measure->kind == MEASURE_FIELD ? record_find(list, measure->curve[0]) : NULL;
         if (measure->kind == MEASURE_MOMENTS) measure_moments(list, out);
-        else if (field && field->count > 0) measure_field(field, out);
-        else continue;
+        else if (measure->kind != MEASURE_FIELD || !measure_field(list, measure->curve[0], out)) continue;
         for (int c = 0; c < measure->curves; c++) run->curve[m][c][frame] = out[c];
         if (measure->kind == MEASURE_MOMENTS && frame == 0 && s->extent == 0) s->extent = sqrt(out[3] * out[3] + out[4] * out[4] + out[5] * out[5]);
     }
 }
 
 static status read_frames(accuracy_study *s, accuracy_run *run, report *r) {
-    static const char *const names[] = {"solid/position", "sheet/position", "sheet/diffused"};
+    static const char *const names[] = {"solid/position", "sheet/position", "solid/diffused", "sheet/diffused"};
     int looks = run->frames < LOOKS ? run->frames : LOOKS;
     status code = STATUS_OK;
     for (int i = 0; i < looks && code == STATUS_OK; i++) {
@@ -105,7 +110,7 @@ static status read_frames(accuracy_study *s, accuracy_run *run, report *r) {
         double time;
         int64_t step;
         int frame = looks > 1 ? (int)((int64_t)i * (run->frames - 1) / (looks - 1)) : 0;
-        code = frame_read_named(run->folder, frame, names, 3, &list, &time, &step, r);
+        code = frame_read_named(run->folder, frame, names, sizeof names / sizeof *names, &list, &time, &step, r);
         if (code == STATUS_OK) take_frame(s, run, frame, &list);
         record_clear(&list);
     }

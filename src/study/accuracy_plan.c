@@ -19,7 +19,7 @@ static const accuracy_measure usual[] = {
     {.name = "shape", .doc = "centre and extents, over the size at the start", .kind = MEASURE_MOMENTS, .curves = 6, .judged = true},
     {.name = "damage", .doc = "mean damage", .kind = MEASURE_CURVES, .curves = 1, .curve = {"damage_mean"}, .judged = true},
     {.name = "cracking", .doc = "when the first particle is broken", .kind = MEASURE_TIME, .curves = 1, .curve = {"damage_max"}, .judged = true},
-    {.name = "diffused", .doc = "mean and root mean square of what diffuses", .kind = MEASURE_FIELD, .curves = 2, .curve = {"sheet/diffused"}, .judged = true},
+    {.name = "diffused", .doc = "mean and root mean square of what diffuses", .kind = MEASURE_FIELD, .curves = 2, .curve = {"diffused"}, .judged = true},
     {.name = "broken", .doc = "fraction of particles that are broken", .kind = MEASURE_CURVES, .curves = 1, .curve = {"broken_fraction"}},
     {.name = "work", .doc = "work of the grips", .kind = MEASURE_CURVES, .curves = 1, .curve = {"grip_work"}},
     {.name = "crack_normal", .doc = "angle between the cracks' planes at the end, over a right angle", .kind = MEASURE_NORMAL, .curves = 3,

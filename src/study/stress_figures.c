@@ -249,7 +249,7 @@ static void end_frame(frame_walk *w) {
 }
 
 static status take_frame(frame_walk *w, const char *folder, report *r) {
-    static const char *const names[] = {"solid/position", "solid/velocity", "solid/deformation_gradient", "solid/damage",
+    static const char *const names[] = {"solid/position", "solid/velocity", "solid/deformation_gradient", "solid/damage", "solid/diffused",
                                         "sheet/position", "sheet/velocity", "sheet/damage", "sheet/diffused"};
     record_list list = {0};
     double time;

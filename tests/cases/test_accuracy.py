@@ -30,6 +30,14 @@ return s.scene { title = "Film", sheets = { { shape = s.rectangle { size = { 2, 
   velocity = function(x, y, z) return 0.05 * math.sin(math.pi * x / 2), 0, 0 end } } }
 """
 
+# A source in the middle of a block.
+WET = """local s = require "sunder"
+local p = s.params { particles = 300, duration = 0.4, fps = 10 }
+return s.scene { title = "Wet", solids = { { shape = s.box { size = { 1, 0.4, 0.4 } }, sources = { { shape = s.sphere { radius = 0.2 }, value = 1 } },
+  material = { density = 1, elastic = { E = 10, nu = 0.3 }, diffusion = { k = 0.05 } } } } }
+"""
+
+
 class Box(harness.Box):
     def write(self, name, text):
         with open(self.path(name), "w", encoding="utf-8") as file:
@@ -70,6 +78,15 @@ def test_orders_are_those_of_the_integrator():
         film = axis(box.study(box.write("film.lua", FILM), "--precision", "f64", "--axis", "step", "--levels", "4"), "step")
         check(abs(film["orders"]["energy"] - 1) < 0.1 and abs(film["orders"]["position"] - 2) < 0.25, f"the sheet's are the same: {film['orders']}")
         check(film["levels"][0]["errors"]["diffused"] > 0, "what diffuses is compared")
+
+
+def test_what_diffuses_in_solids_is_compared():
+    with Box() as box:
+        scene = box.write("wet.lua", WET)
+        step = axis(box.study(scene, "--precision", "f64", "--axis", "resolution", "--levels", "2"), "resolution")
+        check(step["levels"][0]["errors"]["diffused"] > 0, f"two grids, two distributions: {step['levels'][0]['errors']}")
+        totals = [total for total, in box.rows("SELECT value FROM measures_view WHERE name = 'diffused_total' ORDER BY id, frame")]
+        check(len(totals) == 2 * 5 and totals[4] > 1.1 * totals[0] > 0, f"the ledger has how much there is: {totals}")
 
 
 def test_precision_is_round_off():

@@ -325,6 +325,27 @@ static void likeness_is_up_to_shift_and_length(void) {
     CHECK(stress_difference(run_folder, first, &(hard_likeness){.length = 1}, &d, &r) == STATUS_OK && d == HUGE_VAL);
 }
 
+/* A state that no run may be in is no known limit, and no bound that holds makes up for it. */
+static void a_broken_state_fails(void) {
+    static stress_case c;
+    static stress_run run;
+    report r;
+    made_frame frames[] = {whole[0], whole[1]};
+    frames[1].damage = 0;
+    ledger *l = open_ledger("healed.db");
+    write_rows(l, falling[0], ROWS, 2);
+    write_frames("healed", frames, 2);
+    for (int known = 0; known < 2; known++) {
+        c = (stress_case){.like = -1, .hard = {.given = true, .count = 1, .items = {{HARD_speed_max, -HUGE_VAL, known ? 1 : 100}}}};
+        run = (stress_run){.which = 0};
+        snprintf(c.hard.known_limit, sizeof c.hard.known_limit, "%s", known ? "it is so" : "");
+        snprintf(run.id, sizeof run.id, "%s", run_id);
+        snprintf(run.folder, sizeof run.folder, "%s", run_folder);
+        CHECK(stress_judge(l, &c, &run, NULL, &r) == STATUS_OK && run.verdict == STRESS_FAILS && strstr(run.text, "healed"));
+    }
+    ledger_close(l);
+}
+
 /* The verdict of a run that was measured before, or that left nothing to be measured. */
 static stress_verdict verdict(const hard_case *h, const char *message, int code, bool late, double speed) {
     static stress_case c;
@@ -358,6 +379,7 @@ int main(void) {
     RUN(curves_are_read_from_ledger_and_frames);
     RUN(figures_are_those_of_rows_and_frames);
     RUN(what_no_run_may_do_is_told);
+    RUN(a_broken_state_fails);
     RUN(likeness_is_up_to_shift_and_length);
     RUN(verdicts);
     return check_finish();

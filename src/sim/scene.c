@@ -298,6 +298,15 @@ static status check_numbers(const scene *s, report *r) {
     return STATUS_OK;
 }
 
+status scene_check_step(const scene *s, report *r) {
+    double steps = 1 / s->fps / s->dt;
+    if (s->dt == 0 || steps <= SCENE_FRAME_STEPS) return STATUS_OK;
+    char expected[96], found[96];
+    snprintf(expected, sizeof expected, "at least %.3g, which makes %d steps a frame", 1 / s->fps / SCENE_FRAME_STEPS, SCENE_FRAME_STEPS);
+    snprintf(found, sizeof found, "%g, which makes %.3g", s->dt, steps);
+    return report_input(r, s->file, 0, "dt", expected, found, NULL);
+}
+
 status scene_check_material(scene *s, int material, report *r) {
     status code = check_material(s, material, &s->materials[material], r);
     for (int i = 0; i < s->body_count && code == STATUS_OK; i++)
@@ -308,6 +317,7 @@ status scene_check_material(scene *s, int material, report *r) {
 status scene_validate(scene *s, report *r) {
     if (s->body_count + s->sheet_count == 0) return report_input(r, s->file, 0, "solids", "at least one body", "none", NULL);
     status code = check_numbers(s, r);
+    if (code == STATUS_OK) code = scene_check_step(s, r);
     for (int i = 0; i < s->material_count && code == STATUS_OK; i++) code = check_material(s, i, &s->materials[i], r);
     for (int i = 0; i < s->body_count && code == STATUS_OK; i++) code = check_body(s, &s->bodies[i], r);
     for (int i = 0; i < s->sheet_count && code == STATUS_OK; i++) code = check_sheet(s, &s->sheets[i], r);

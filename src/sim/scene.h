@@ -16,6 +16,7 @@
 #include <stdint.h>
 
 enum { SCENE_MATERIALS = 16, SCENE_BODIES = 32, SCENE_GRIPS = 32, SCENE_COLLIDERS = 32, SCENE_NOTCHES = 64, SCENE_VARIATIONS = 8, SCENE_PARAMETERS = 512 };
+enum { SCENE_FRAME_STEPS = 5000000 }; /* a frame that needs more steps will never end */
 enum { SCENE_SHEETS = 16, SHEET_CUTS = 16, BODY_SOURCES = 16 }; /* sheets; notches of each; sources of each and of each solid */
 
 /* A constant, or a function of `inputs` reals (time, or x y z) giving `outputs` reals. */
@@ -169,6 +170,9 @@ void scene_destroy(scene *s);
 /* Checks what tables cannot: bodies present, materials used, numbers finite, needed effects on, twins resolved. Fills the derived
  * halves of twins in every material. */
 status scene_validate(scene *s, report *r);
+
+/* Whether a frame of the scene's own `dt` is at most SCENE_FRAME_STEPS steps; STATUS_INPUT otherwise. */
+status scene_check_step(const scene *s, report *r);
 
 /* The same for one material whose values have changed: its effects, and the fibres of the bodies that it is for. */
 status scene_check_material(scene *s, int material, report *r);

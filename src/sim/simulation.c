@@ -9,9 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A frame that needs more steps than this will never end. */
-static const double STEPS_LIMIT = 5e6;
-
 /* Materials twice: as they are, and again for the particles that a grip protects from damage. */
 static void define_materials(simulation *s, solid_definition *d) {
     const scene *from_scene = s->scene;
@@ -333,7 +330,7 @@ static status choose_step(simulation *s, double left, int64_t *steps_left, doubl
         return STATUS_OK;
     }
     double needed = ceil(left / least - 1e-9);
-    if (!(needed <= STEPS_LIMIT)) {
+    if (!(needed <= SCENE_FRAME_STEPS)) {
         const char *name = which >= 0 ? s->plan.effects[which]->name : "?";
         bool damage = strcmp(name, "damage") == 0;
         return report_set(r, STATUS_DIVERGED, "step %lld, t = %.6g: the effect '%s' limits the time step to %.3g, %.3g steps for the rest of the frame%s",

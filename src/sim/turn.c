@@ -40,8 +40,11 @@ static status turn_effect(scene *now, const knob *k, knob_place p, const double 
 
 static status turn_place(scene *now, const knob *k, knob_place p, const double value[3], report *r) {
     if (p.kind != PLACE_EFFECT) {
-        *knob_place_value(now, p) = value[0];
-        return STATUS_OK;
+        double *turned = knob_place_value(now, p), old = *turned;
+        *turned = value[0];
+        status stepped = scene_check_step(now, r);
+        if (stepped != STATUS_OK) *turned = old;
+        return blame_turn(k, stepped, r);
     }
     size_t bytes = p.material < 0 ? sizeof now->effects : sizeof now->materials[0].effects;
     effect_values *all = p.material < 0 ? now->effects : now->materials[p.material].effects, *before = memory_allocate(bytes);

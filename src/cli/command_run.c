@@ -215,18 +215,22 @@ static void print_progress(const session_snapshot *p, FILE *out, bool terminal) 
     fflush(out);
 }
 
+/* The warnings since the last call, also those that came and went between two looks; `told`: how many events there were by then. */
+static void print_warnings(const session_snapshot *p, int64_t *told, FILE *out, bool terminal) {
+    int64_t new_ones = p->event_total - *told;
+    for (int i = new_ones < p->event_count ? p->event_count - (int)new_ones : 0; i < p->event_count; i++)
+        if (strcmp(p->events[i].kind, "warning") == 0) fprintf(out, "%swarning: %s\n", terminal ? "\r\033[K" : "", p->events[i].text);
+    *told = p->event_total;
+}
+
 static void watch_plainly(session *s, FILE *out, bool quiet) {
     session_snapshot snapshot = {0};
     bool terminal = isatty(fileno(out));
-    int64_t shown = -1;
-    char message[sizeof snapshot.message] = "";
+    int64_t shown = -1, told = 0;
     for (bool ended = false; !ended;) {
         ended = session_wait(s, 0.1);
         if (quiet || !session_poll(s, &snapshot)) continue;
-        if (snapshot.state != SESSION_ENDED && snapshot.message[0] && strcmp(message, snapshot.message) != 0) {
-            snprintf(message, sizeof message, "%s", snapshot.message);
-            fprintf(out, "%swarning: %s\n", terminal ? "\r\033[K" : "", message);
-        }
+        print_warnings(&snapshot, &told, out, terminal);
         if (snapshot.frame != shown) print_progress(&snapshot, out, terminal);
         shown = snapshot.frame;
     }

@@ -12,6 +12,7 @@ static void show_event(session *s, int64_t frame, const char *kind, const char *
     session_snapshot *p = &s->shown;
     if (p->event_count == SESSION_EVENTS) memmove(p->events, p->events + 1, (SESSION_EVENTS - 1) * sizeof p->events[0]);
     else p->event_count++;
+    p->event_total++;
     session_event *e = &p->events[p->event_count - 1];
     e->frame = frame;
     snprintf(e->kind, sizeof e->kind, "%s", kind);
@@ -29,15 +30,20 @@ void session_tell(session *s, int64_t frame, const char *kind, const char *text)
     session_tolerate(s, code, &r);
 }
 
-static void set_warning(session *s, const char *prefix, const char *text) {
+/* Returns whether it is another than the last one; *frame: the one shown. */
+static bool set_warning(session *s, const char *text, int64_t *frame) {
     pthread_mutex_lock(&s->lock);
-    snprintf(s->warning, sizeof s->warning, "%s%.480s", prefix, text);
+    bool another = strcmp(s->warning, text) != 0;
+    snprintf(s->warning, sizeof s->warning, "%s", text);
+    *frame = s->shown.frame;
     pthread_mutex_unlock(&s->lock);
+    return another;
 }
 
 void session_warn(session *s, int64_t frame, const char *text) {
     report ignored;
-    set_warning(s, "", text);
+    int64_t shown;
+    (void)set_warning(s, text, &shown);
     show_event(s, frame, "warning", text);
     pthread_mutex_lock(&s->ledger_lock);
     (void)ledger_event(s->ledger, s->id, frame, "warning", text, &ignored);
@@ -46,9 +52,11 @@ void session_warn(session *s, int64_t frame, const char *text) {
 
 void session_tolerate(session *s, status code, const report *r) {
     if (code == STATUS_OK) return;
-    char text[sizeof s->warning];
-    report_format(r, text, sizeof text);
-    set_warning(s, "ledger: ", text);
+    char text[sizeof s->warning] = "ledger: ";
+    size_t used = strlen(text);
+    report_format(r, text + used, sizeof text - used);
+    int64_t frame;
+    if (set_warning(s, text, &frame)) show_event(s, frame, "warning", text);
 }
 
 static void take_sample(session *s, double seconds) {

@@ -65,7 +65,7 @@ typedef struct session_unfinished {
 /* Something worth telling: "first_crack", "warning", "knob", "branch" … */
 typedef struct session_event {
     int64_t frame;
-    char kind[16], text[176];
+    char kind[16], text[512];
 } session_event;
 
 /* Where the time of steps goes: a phase of a step, or an effect's part in it. */
@@ -106,6 +106,7 @@ typedef struct session_snapshot {
     int knob_version;      /* grows whenever a knob's value changes: session_knobs is worth calling */
     char parent[40];       /* of a branch */
     int64_t parent_frame;
+    int64_t event_total;   /* since the session's start */
     int event_count;       /* the last SESSION_EVENTS, oldest first */
     session_event events[SESSION_EVENTS];
     int stage_count;

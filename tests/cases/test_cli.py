@@ -135,6 +135,14 @@ def test_wrong_while_running():
         check(set(box.statuses()) <= {"failed"}, f"runs that failed say so: {box.statuses()}")
 
 
+def test_warnings_outlive_short_runs():
+    """However soon a run ends, and however it does, its warnings have been told."""
+    with Box() as box:
+        for settings, wanted in ((["--set", "dt=0.02", "--frames", "2"], 0), (["--set", "dt=1"], 1)):
+            code, out, _ = box.call("run", PULL, "--set", "particles=500", *settings)
+            check(code == wanted and out.count("warning: dt 0.0") == 1, f"{settings}: exit code {code}: {out[:300]}")
+
+
 def test_check_says_what_is_wrong():
     with Box() as box:
         scene = box.path("typo.lua")

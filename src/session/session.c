@@ -164,17 +164,19 @@ static status log_parameters(session *s, report *r) {
 /* The run's folder as an absolute path: --out, or a folder named by the id. */
 static status choose_folder(session *s, report *r) {
     char base[SESSION_PATH];
-    if (s->options.output) {
-        if (s->options.output[0] == '/') snprintf(s->folder, sizeof s->folder, "%s", s->options.output);
-        else {
-            if (!getcwd(base, sizeof base)) return report_set(r, STATUS_SYSTEM, "current folder: %s", strerror(errno));
-            snprintf(s->folder, sizeof s->folder, "%.700s/%.300s", base, s->options.output);
-        }
-        return STATUS_OK;
-    }
-    status code = ledger_runs_folder(base, sizeof base, r);
-    if (code == STATUS_OK) snprintf(s->folder, sizeof s->folder, "%.900s/%s", base, s->id);
-    return code;
+    const char *given = s->options.output;
+    status code = STATUS_OK;
+    if (!given) code = ledger_runs_folder(base, sizeof base, r);
+    else if (!*given) code = report_input(r, NULL, 0, "--out", "the folder of a run", "an empty name", NULL);
+    else if (*given != '/' && !getcwd(base, sizeof base)) code = report_set(r, STATUS_SYSTEM, "current folder: %s", strerror(errno));
+    if (code != STATUS_OK) return code;
+    bool absolute = given && *given == '/';
+    int length = snprintf(s->folder, sizeof s->folder, "%s%s%s", absolute ? "" : base, absolute ? "" : "/", given ? given : s->id);
+    if (length < (int)sizeof s->folder) return STATUS_OK;
+    char expected[64], found[64];
+    snprintf(expected, sizeof expected, "the path of a folder under %d bytes", SESSION_PATH);
+    snprintf(found, sizeof found, "one of %d", length);
+    return report_input(r, NULL, 0, "--out", expected, found, NULL);
 }
 
 static status begin_row(session *s, report *r) {

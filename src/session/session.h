@@ -82,7 +82,7 @@ typedef struct session_snapshot {
     session_state state;
     status outcome;         /* valid when state is SESSION_ENDED */
     char message[768];      /* the failure, or the last warning */
-    char run_id[40], title[128], output[512], precision[8], simd[16], variant[64];
+    char run_id[40], title[128], output[1024], precision[8], simd[16], variant[64];
     char effects[SESSION_EFFECTS][32];
     int effect_count;
     int threads;

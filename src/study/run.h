@@ -33,7 +33,7 @@ typedef struct study_result {
     bool begun;                  /* it has a row in the ledger */
     status outcome;              /* STATUS_INTERRUPTED too when it never began because the study was stopped */
     char id[LEDGER_ID], message[STUDY_MESSAGE]; /* message: why it failed; "" */
-    char folder[512];
+    char folder[1024];
     int64_t particles, steps;
     double step_seconds, seconds; /* of steps alone; of the whole run */
 } study_result;

@@ -61,6 +61,9 @@ int cli_fail(const report *r);
 /* The same for wrong arguments: what is wrong with `option`, and how the command is used. Returns 2. */
 int cli_usage(const char *name, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* Prints how a command is used; the exit code: 2 when there is none of that name. */
+int cli_help_of(const char *name);
+
 /* Prints all of a script's reports; returns the exit code of the first. */
 int cli_fail_script(const script_reports *reports);
 

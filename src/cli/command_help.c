@@ -134,7 +134,8 @@ int command_help(int count, char **arguments) {
     if (count == 2 && strcmp(arguments[1], "effects") == 0) return print_effects();
     if (count >= 2 && strcmp(arguments[1], "actions") == 0 && (count == 2 || (count == 3 && strcmp(arguments[2], "--json") == 0)))
         return print_actions(count == 3);
-    if (count > 1) return cli_usage("help", "expected nothing, 'effects', or 'actions' and perhaps --json");
+    if (count == 2) return cli_help_of(arguments[1]);
+    if (count > 2) return cli_usage("help", "expected nothing, a command, 'effects', or 'actions' and perhaps --json");
     int commands;
     const command *table = command_table(&commands);
     puts("sunder: a terminal workbench for tearing things\n\n  sunder [--db FILE]\n      open the workbench\n"

@@ -275,7 +275,8 @@ int command_run(int count, char **arguments) {
     status outcome = session_outcome(s, &r);
     if (outcome != STATUS_OK) (void)cli_fail(&r);
     if (o.json && session_summary(s)) printf("%s\n", session_summary(s));
-    else if (!o.quiet) cli_print_end(s, stdout);
+    else if (!o.quiet && !o.json) cli_print_end(s, stdout);
+    if (!o.json && fflush(stdout) != 0) clearerr(stdout); /* a run whose progress nobody could read has not failed */
     session_destroy(s);
     return status_exit_code(outcome);
 }

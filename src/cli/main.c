@@ -46,7 +46,7 @@ static const command commands[] = {
               "         bench constitutive [--count N] [--json]",
      "measure how fast steps are, beside what the machine could do; table1: seconds a frame, beside the papers'; constraint: inextensible fibres' solvers;\n"
      "      constitutive: one stress, beside the paper's form and fixed-corotated", command_bench},
-    {"help", "help [effects | actions] [--json]", "list the commands, all effects with their parameters, or all that the workbench can do", command_help},
+    {"help", "help [COMMAND | effects | actions [--json]]", "list the commands, or say more of one; all effects with their parameters; all that the workbench can do", command_help},
 };
 
 const command *command_table(int *count) {
@@ -119,6 +119,13 @@ static int unknown_command(const char *name) {
     return cli_fail(&r);
 }
 
+int cli_help_of(const char *name) {
+    const command *c = find_command(name);
+    if (!c) return unknown_command(name);
+    printf("usage: sunder %s\n\n%s\n", c->usage, c->help);
+    return 0;
+}
+
 /* `sunder COMMAND … --help`, or -h where it is the first word. */
 static bool asks_for_help(int count, char **arguments) {
     if (count > 0 && strcmp(arguments[0], "-h") == 0) return true;
@@ -127,9 +134,7 @@ static bool asks_for_help(int count, char **arguments) {
     return false;
 }
 
-int main(int count, char **arguments) {
-    setlocale(LC_ALL, "");
-    setlocale(LC_NUMERIC, "C"); /* numbers in files and JSON have a point, wherever we are */
+static int run_command(int count, char **arguments) {
     if (count < 2) return command_workbench(count, arguments);
     const char *name = arguments[1];
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) return command_help(0, NULL);
@@ -137,6 +142,14 @@ int main(int count, char **arguments) {
     if (strncmp(name, "--", 2) == 0) return command_workbench(count, arguments);
     const command *c = find_command(name);
     if (!c) return unknown_command(name);
-    if (asks_for_help(count - 2, arguments + 2)) return printf("usage: sunder %s\n\n%s\n", c->usage, c->help) < 0;
-    return c->handler(count - 1, arguments + 1);
+    return asks_for_help(count - 2, arguments + 2) ? cli_help_of(name) : c->handler(count - 1, arguments + 1);
+}
+
+int main(int count, char **arguments) {
+    setlocale(LC_ALL, "");
+    setlocale(LC_NUMERIC, "C"); /* numbers in files and JSON have a point, wherever we are */
+    int code = run_command(count, arguments);
+    if ((fflush(stdout) == 0 && !ferror(stdout)) || code != 0) return code;
+    fprintf(stderr, "sunder: cannot write the output: %s\n", strerror(errno));
+    return 1;
 }

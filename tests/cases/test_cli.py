@@ -3,10 +3,10 @@
 
 Usage: test_cli.py SUNDER [NAME...]   Each test works in a folder and with a ledger of its own.
 """
-import glob, json, os, re, signal, time
+import glob, json, os, re, signal, sqlite3, subprocess, time
 
 import harness
-from harness import SOURCE, check, checkpoints_of, frames_of, run_tests
+from harness import SOURCE, SUNDER, check, checkpoints_of, frames_of, run_tests
 
 PULL = os.path.join(SOURCE, "scenes/solid/tube_pull.lua")
 SMALL = ["--set", "particles=1500", "--set", "break_stretch=0.02", "--set", "pull=0.6"]
@@ -171,6 +171,9 @@ def test_commands_say_how_they_are_called():
             for words in ([command, "-h"], [command, "anything", "--help"]):
                 code, out, err = box.call(*words)
                 check(code == 0 and f"usage: sunder {command}" in out and not err, f"{words}: exit code {code}: {out[:80]}{err[:80]}")
+            check(box.call("help", command)[:2] == (code, out) or command == "help", f"sunder help {command} says the same")
+        code, _, err = box.call("help", "rnu")
+        check(code == 2 and "'run'" in err, f"help for what is not there: {code}: {err}")
         code, out, _ = box.call("runs", "list", "--where", "status='--help'")
         check(code == 0 and "usage" not in out, "a word that holds --help is none")
 
@@ -209,6 +212,28 @@ def test_output_is_never_overwritten():
         check(os.stat(box.path("out/frames/000002.hdf")).st_mtime_ns == before, "and nothing in it is touched")
         code, out, err = box.call("run", PULL, "--frames", "1", "--db", "/dev/null/ledger.db")
         check(code in (1, 2) and "/dev/null" in err, f"a ledger that cannot be: {code} {err}")
+
+
+def test_output_folder_is_taken_as_it_is_said():
+    """A folder without a name, or with one that is too long, is refused: neither is made to be another one."""
+    with Box() as box:
+        for name in ("", "x/" * 600 + "y"):
+            code, _, err = box.call("run", PULL, *SMALL, "--frames", "1", "--out", name)
+            check(code == 2 and "--out" in err, f"{name[:8]!r}: exit code {code}: {err[:200]}")
+        check(not os.path.exists(box.path("frames")) and not os.path.exists(box.path("x")), f"nothing was written: {os.listdir(box.folder)}")
+        deep = "y" * 200 + "/" + "z" * 200 + "/run"
+        code, result, err = box.run(PULL, *SMALL, "--frames", "1", "--out", deep)
+        check(code == 0 and result["out"].endswith(deep) and len(frames_of(result["out"])) == 2, f"a long name: {code}: {err[:200]}")
+
+
+def test_output_that_cannot_be_written():
+    """What was asked for and got lost is an error; progress that nobody reads is none."""
+    with Box() as box:
+        for words, wanted in ((["explain", PULL, *SMALL], 1), (["run", PULL, *SMALL, "--frames", "1", "--json", "--quiet"], 1),
+                              (["run", PULL, *SMALL, "--frames", "1"], 0)):
+            with open("/dev/full", "w") as full:
+                done = subprocess.run([SUNDER, *words], env=box.environment, stdout=full, stderr=subprocess.PIPE, text=True)
+            check(done.returncode == wanted and ("cannot write the output" in done.stderr) == (wanted == 1), f"{words}: {done}")
 
 
 def test_functions_of_place_and_notches_resume():

@@ -1,6 +1,6 @@
 -- Runs in the order of one measure of their last frame, the best first.
 --   :measure  its name (default broken_fraction)
---   :most     1: the largest is the best; else the smallest
+--   :most     1: the largest is the best; else the smallest (default)
 --   :scene    only runs whose title contains this (default: all)
 --   :limit    how many (default 10)
 SELECT runs.id AS run, runs.status, runs.scene_title AS scene, runs.variant, final_measures.value, runs.output

@@ -129,7 +129,8 @@ typedef struct ledger_cell {
 typedef status (*ledger_row)(void *context, const ledger_cell *cells, int count, report *r);
 
 /* Runs one SQL query that only reads. arguments has shape [argument_count], each "NAME=VALUE" for the parameter :NAME
- * of the SQL; those not given are NULL, an unknown one is an input error with the nearest. */
+ * of the SQL. One that is not given is an input error, unless the comment that the SQL opens with says its default ("(default …)"): it is
+ * NULL then; an unknown one is an input error with the nearest. */
 status ledger_each_row(ledger *l, const char *sql, const char *const *arguments, int argument_count, ledger_row row,
                        void *context, report *r);
 

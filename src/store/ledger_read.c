@@ -90,7 +90,31 @@ static status unknown_argument(sqlite3_stmt *statement, const char *name, report
                         name, name_nearest(name, names, count));
 }
 
+/* Whether the comment that a ready-made query opens with gives the parameter (with its colon) a default: "--   :NAME  what it is (default …)". */
+static bool may_be_left_out(const char *sql, const char *parameter) {
+    size_t length = strlen(parameter);
+    for (; strncmp(sql, "--", 2) == 0; sql += strcspn(sql, "\n"), sql += *sql == '\n') {
+        const char *word = sql + 2 + strspn(sql + 2, " "), *end = sql + strcspn(sql, "\n"), *fallback = strstr(sql, "(default");
+        if (strncmp(word, parameter, length) == 0 && word[length] == ' ') return fallback && fallback < end;
+    }
+    return false;
+}
+
+/* SQLite takes a parameter without a value for NULL, with which most conditions hold for no row: an empty answer that says nothing. */
+static status check_bound(sqlite3_stmt *statement, const bool *bound, int limit, report *r) {
+    for (int i = 1; i <= sqlite3_bind_parameter_count(statement) && i < limit; i++) {
+        const char *name = sqlite3_bind_parameter_name(statement, i);
+        if (bound[i] || (name && may_be_left_out(sqlite3_sql(statement), name))) continue;
+        char expected[96];
+        snprintf(expected, sizeof expected, "%.48s=VALUE, which the query asks for", name ? name + 1 : "a name (:NAME) and NAME");
+        return report_input(r, NULL, 0, name ? name + 1 : "?", expected, "none", NULL);
+    }
+    return STATUS_OK;
+}
+
 static status bind_arguments(sqlite3_stmt *statement, const char *const *arguments, int count, report *r) {
+    enum { BOUND = 64 };
+    bool bound[BOUND] = {false};
     for (int i = 0; i < count; i++) {
         char name[64];
         const char *equals = strchr(arguments[i], '=');
@@ -99,8 +123,9 @@ static status bind_arguments(sqlite3_stmt *statement, const char *const *argumen
         int index = sqlite3_bind_parameter_index(statement, name);
         if (index == 0) return unknown_argument(statement, name + 1, r);
         bind_value(statement, index, equals + 1);
+        if (index < BOUND) bound[index] = true;
     }
-    return STATUS_OK;
+    return check_bound(statement, bound, BOUND, r);
 }
 
 /* ---- rows -------------------------------------------------------------------------------------------------------- */

@@ -54,6 +54,9 @@ static int parse(mesh_command *c, int count, char **arguments) {
     if (code) return code;
     if (optind != count - 1) return cli_usage("mesh", "expected one run (an id, its beginning or end, or last)");
     c->run = arguments[optind];
+    size_t length = strlen(c->out);
+    if (c->field && (length < 4 || strcmp(c->out + length - 4, ".ply") != 0))
+        return cli_usage("mesh", "--field %s: expected a .ply for --out, which can hold a quantity, found '%s'", c->field, c->out);
     return 0;
 }
 
@@ -98,6 +101,8 @@ static status make_surface(const mesh_command *c, frame_player *player, int64_t 
 static status write_frame(mesh_command *c, frame_player *player, int64_t frame, const char *path, report *r) {
     view_surface surface = {0};
     status code = make_surface(c, player, frame, &surface, r);
+    if (code == STATUS_OK && surface.triangle_count == 0 && !c->intact)
+        code = report_input(r, NULL, 0, c->cell > 0 ? "--cell" : "--spacing", "a length that is small beside the body", "one that gives it no surface", NULL);
     export_mesh out = {.vertex_count = surface.vertex_count, .triangle_count = surface.triangle_count, .vertex = surface.vertex,
                         .value = c->field || c->intact ? surface.value : NULL, .value_name = c->field ? c->field : "damage", .triangle = surface.triangle};
     if (code == STATUS_OK) code = export_mesh_write(path, &out, r);

@@ -41,6 +41,8 @@ static int parse(render_options *o, int count, char **arguments) {
     }
     if (optind != count - 1) return cli_usage("render", "expected one run (an id, its beginning or end, or last)");
     o->run = arguments[optind];
+    size_t length = strlen(o->out);
+    if (length < 4 || strcmp(o->out + length - 4, ".png") != 0) return cli_usage("render", "--out %s: expected a name that ends in .png", o->out);
     return 0;
 }
 

@@ -36,7 +36,7 @@ static const command commands[] = {
      "a run for other programs: measures (csv, json), particles (ply, obj, vtp, csv with --frame), a sequence (--all, usda)", command_export},
     {"mesh", "mesh RUN [--frame N | --all] [--out FILE.ply|.obj|.stl] [--field NAME] [--intact] [--cell L] [--spacing L] [--db FILE] [--json]",
      "the body's surface as a triangle mesh; --intact opens cracks", command_mesh},
-    {"render", "render RUN [--frame N] [--out FILE.png] [--width N] [--height N] [--yaw D] [--pitch D] [--zoom PERCENT]", "draw a frame", command_render},
+    {"render", "render RUN [--frame N] [--out FILE.png] [--colour FIELD] [--width N] [--height N] [--yaw D] [--pitch D] [--zoom PERCENT] [--db FILE]", "draw a frame", command_render},
     {"doctor", "doctor [--json]", "say what this machine and this build can do", command_doctor},
     {"bench", "bench step|sheet [--json] [--csv FILE] [--full] [--case NAME]… [--particles N] [--threads N] [--precision f32|f64] [--seconds S] [--repeat N]\n"
               "         sheet also: [--against lammps]\n"

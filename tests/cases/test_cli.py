@@ -337,6 +337,8 @@ def test_render():
         code, _, err = box.call("render", run, "--out", box.path("a.png"), "--width", "320", "--height", "200")
         data = open(box.path("a.png"), "rb").read() if code == 0 else b""
         check(code == 0 and data[:4] == b"\x89PNG" and len(data) > 2000, f"a picture: {code} {err}")
+        code, _, err = box.call("render", run, "--out", box.path("a.jpg"))
+        check(code == 2 and ".png" in err and not os.path.exists(box.path("a.jpg")), f"a PNG of another name: {code} {err}")
 
 
 run_tests(globals())

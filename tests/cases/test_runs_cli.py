@@ -49,6 +49,9 @@ def test_asking(box, runs):
     check(code == 2 and "parameter" in err, "a parameter that is none")
     answer = box.json("runs", "sql", "SELECT count(*) AS n FROM runs_view WHERE particles > :least", "least=10")
     check(answer == {"columns": ["n"], "rows": [[len(runs)]]}, f"one's own SQL: {answer}")
+    for words in (["sql", "SELECT id FROM runs WHERE particles > :least"], ["query", "history", "measure=kinetic"], ["query", "effect_of"]):
+        code, out, err = box.call("runs", *words)
+        check(code == 2 and "=VALUE" in err and not out, f"{words}: what a query asks for and was not given: {code}: {err}{out}")
     code, _, err = box.call("runs", "sql", "DELETE FROM runs")
     check(code == 2 and len(box.rows("SELECT id FROM runs")) == len(runs), "SQL that writes is refused")
     code, _, err = box.call("runs", "bets")
@@ -255,6 +258,10 @@ def test_meshes(box, runs):
     whole, intact = box.json("mesh", ident, "--out", "w.ply"), box.json("mesh", ident, "--intact", "--out", "i.ply")
     check(whole["triangles"] != intact["triangles"], "broken particles are left out")
     check(box.call("mesh", ident, "--field", "damge")[0] == 2 and box.call("mesh", ident, "--cell", "-1")[0] == 2 and box.call("mesh", ident, "--out", "a.vtk")[0] == 2, "wrong wishes")
+    code, _, err = box.call("mesh", ident, "--cell", "100", "--out", "none.ply")
+    check(code == 2 and "--cell" in err and not os.path.exists(box.path("none.ply")), f"cells larger than the body: {code}: {err}")
+    code, _, err = box.call("mesh", ident, "--field", "damage", "--out", "none.stl")
+    check(code == 2 and "--field" in err and not os.path.exists(box.path("none.stl")), f"a quantity for a format without: {code}: {err}")
 
 
 SWEEP = """local s = require "sunder"

@@ -5,6 +5,7 @@
 #include "solid/inextensible.h"
 #include "solid/order.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -68,9 +69,12 @@ static void plan_fields(solid *s) {
     s->tension_field = find_index(s, "fibre_tension");
     s->fibre_wave_field = find_index(s, "fibre_wave");
     s->snapped_field = find_index(s, "fibre_damage");
-    s->swelling_field = find_index(s, "swelling");
     s->diffusion.field = find_index(s, "diffused");
     s->transfers_damage = s->damage_field >= 0;
+    for (int e = 0; e < SOLID_EFFECTS; e++) {
+        assert(solid_effects[e]->field_count <= OWN_FIELDS);
+        for (int i = 0; i < OWN_FIELDS; i++) s->own_field[e][i] = i < solid_effects[e]->field_count ? find_index(s, solid_effects[e]->fields[i].key) : -1;
+    }
 }
 
 static size_t share_bytes(const solid *s) {

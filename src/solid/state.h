@@ -30,6 +30,7 @@ enum {
     WINDOW = 10,         /* nodes a side: reaches −2 … 7, enough for a cubic kernel centred by the quadratic's cells */
     WINDOW_NODES = WINDOW * WINDOW * WINDOW,
     NEIGHBOURS = 27,
+    OWN_FIELDS = 8,      /* that an effect's table may name */
     CONSTANTS = 16,      /* reals an effect may derive from a material's values */
     EFFECT_FIELDS = 20,
     IMPLICIT_WINDOWS = 4, /* reals a node that a solve on the grid scatters together */
@@ -189,7 +190,8 @@ struct solid {
     solid_field fields[FIELD_LIMIT];
     int density_scale, stiffness_scale, toughness_scale, viscosity_scale, gamma_scale; /* the same: parameters that vary in place */
     int given_stiffness, given_toughness; /* of those the ones that the definition brings, where softening has its own */
-    int damage_field, history_field, fibre_field, fibre2_field, tension_field, fibre_wave_field, snapped_field, swelling_field; /* indices, −1 when absent */
+    int damage_field, history_field, fibre_field, fibre2_field, tension_field, fibre_wave_field, snapped_field; /* indices, −1 when absent */
+    int own_field[SOLID_EFFECTS][OWN_FIELDS]; /* the fields that each effect's table names, in its order; −1 when absent: for the effect's own stages */
 
     int32_t tile_count, tile_capacity, result_capacity, block_count, block_capacity, colour_capacity;
     solid_tile *tiles;

@@ -17,6 +17,7 @@ static void plan_fields(solid *s) {
     add_field(s, FIELD_VOLUME, "volume", 1);
     s->field_count = FIELD_BUILT_IN;
     s->diffusion.field = s->damage_field = s->history_field = s->fibre_field = s->fibre2_field = -1;
+    memset(s->own_field, -1, sizeof s->own_field); /* an effect with a history is none of theirs */
     if (s->definition.fibre1) add_field(s, s->fibre_field = s->field_count, "fibre", 3);
     if (s->definition.fibre2) add_field(s, s->fibre2_field = s->field_count, "fibre2", 3);
 }

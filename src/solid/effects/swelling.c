@@ -27,7 +27,7 @@ SIMD_INLINE mat3v relieve(mat3v F, vec across, vec along, vec3v a) {
 
 static void feel(tile_work *w) {
     const solid *s = w->state;
-    const solid_field *F_field = &s->fields[FIELD_DEFORMATION], *swollen = &s->fields[s->swelling_field];
+    const solid_field *F_field = &s->fields[FIELD_DEFORMATION], *swollen = &s->fields[s->own_field[EFFECT_swelling][0]];
     for (int k = 0; k < w->tile->pack_count; k++)
         for (int part = 0; part < PACK_PARTS; part++) {
             int32_t pack = w->tile->first_pack + k;

@@ -257,7 +257,7 @@ int command_export(int count, char **arguments) {
     int result = parse(&c, count, arguments);
     if (result) return result;
     status code = check_format(&c, &r);
-    if (code == STATUS_OK) code = ledger_open_given(c.database, path, sizeof path, &l, &r);
+    if (code == STATUS_OK) code = ledger_open_past(c.database, path, sizeof path, &l, &r);
     if (code == STATUS_OK) code = runs_find(l, c.run, c.id, c.folder, &r);
     /* A table of measures, unless particles are meant by naming frames. */
     bool numbers = strcmp(c.format, "json") == 0 || (strcmp(c.format, "csv") == 0 && c.frame < 0 && !c.all);

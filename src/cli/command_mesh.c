@@ -161,7 +161,7 @@ int command_mesh(int count, char **arguments) {
     frame_player *player = NULL;
     int result = parse(&c, count, arguments);
     if (result) return result;
-    status code = ledger_open_given(c.database, path, sizeof path, &l, &r);
+    status code = ledger_open_past(c.database, path, sizeof path, &l, &r);
     if (code == STATUS_OK) code = runs_find(l, c.run, id, folder, &r);
     if (l) ledger_close(l);
     if (code == STATUS_OK) code = frame_player_open(folder, 0, &player, &r);

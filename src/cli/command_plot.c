@@ -120,7 +120,7 @@ static status read_curves(plot_command *c, ledger *l, report *r) {
 static status collect(plot_command *c, int count, char **names, report *r) {
     char path[1024];
     ledger *l;
-    status code = ledger_open_given(c->database, path, sizeof path, &l, r);
+    status code = ledger_open_past(c->database, path, sizeof path, &l, r);
     if (code == STATUS_OK) code = find_runs(c, l, count, names, r);
     for (int m = 0; m < c->measure_count && code == STATUS_OK; m++) code = ledger_check_measure(l, c->measures[m], r);
     if (code == STATUS_OK && c->against) {

@@ -49,7 +49,7 @@ static int parse(render_options *o, int count, char **arguments) {
 static status find_folder(const render_options *o, char *folder, size_t size, report *r) {
     char path[1024], id[LEDGER_ID];
     ledger *l = NULL;
-    status code = ledger_open_given(o->database, path, sizeof path, &l, r);
+    status code = ledger_open_past(o->database, path, sizeof path, &l, r);
     if (code == STATUS_OK) code = ledger_resolve(l, o->run, id, folder, size, r);
     if (l) ledger_close(l);
     return code;

@@ -71,7 +71,7 @@ int command_runs(int count, char **arguments) {
     ledger *l = NULL;
     runs_verb *verb = find_verb(optind < count ? arguments[optind++] : "list", &r);
     if (!verb) return cli_fail(&r);
-    status code = ledger_open_given(o.database, o.path, sizeof o.path, &l, &r);
+    status code = ledger_open_past(o.database, o.path, sizeof o.path, &l, &r);
     if (code == STATUS_OK) code = verb(l, &o, count - optind, arguments + optind, &exit, &r);
     if (l) ledger_close(l);
     return code == STATUS_OK ? exit : cli_fail(&r);

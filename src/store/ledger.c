@@ -287,6 +287,13 @@ status ledger_open_given(const char *given, char *path, size_t size, ledger **ou
     return s ? s : ledger_open(path, out, r);
 }
 
+status ledger_open_past(const char *given, char *path, size_t size, ledger **out, report *r) {
+    *out = NULL;
+    if (given && *given && access(given, F_OK) != 0 && errno == ENOENT)
+        return report_input(r, given, 0, "--db", "a ledger that is there", "none", NULL);
+    return ledger_open_given(given, path, size, out, r);
+}
+
 void ledger_close(ledger *l) {
     if (!l) return;
     for (int i = 0; i < l->statement_count; i++) sqlite3_finalize(l->statements[i].statement);

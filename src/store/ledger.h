@@ -26,6 +26,8 @@ status ledger_runs_folder(char *path, size_t size, report *r);
 status ledger_open(const char *path, ledger **out, report *r);
 /* Opens the ledger that was asked for (--db), or the default one where `given` is NULL; path[size] becomes its path. */
 status ledger_open_given(const char *given, char *path, size_t size, ledger **out, report *r);
+/* The same to ask about past runs: a ledger that was asked for and is not there is an input error, and is not made. */
+status ledger_open_past(const char *given, char *path, size_t size, ledger **out, report *r);
 void ledger_close(ledger *l);
 
 typedef struct ledger_run {

@@ -54,6 +54,9 @@ def test_asking(box, runs):
         check(code == 2 and "=VALUE" in err and not out, f"{words}: what a query asks for and was not given: {code}: {err}{out}")
     code, _, err = box.call("runs", "sql", "DELETE FROM runs")
     check(code == 2 and len(box.rows("SELECT id FROM runs")) == len(runs), "SQL that writes is refused")
+    for words in (["runs", "list"], ["plot", "last"], ["export", "last", "--format", "csv"], ["mesh", "last"], ["render", "last"]):
+        code, out, err = box.call(*words, "--db", "none.db")
+        check(code == 2 and "none.db" in err and not os.path.exists(box.path("none.db")), f"{words}: a ledger that is none is not made: {code}: {out}{err}")
     code, _, err = box.call("runs", "bets")
     check(code == 2 and "best" in err, "a verb that is none")
 

@@ -248,6 +248,7 @@ static int parse(stress_command *c, int count, char **arguments) {
         if (c->word_count == WORDS) return cli_usage("stress", "at most %d cases", WORDS);
         c->words[c->word_count++] = arguments[optind];
     }
+    if (code == 0 && c->measures && c->json) return cli_usage("stress", "--measures is a table for people: without --json");
     if (c->limit == 0) c->limit = c->full ? 3600 : 300;
     if (c->jobs == 0) c->jobs = processor_count() > c->threads ? processor_count() / c->threads : 1;
     return code;

@@ -20,7 +20,7 @@ static const command commands[] = {
     {"sweep", "sweep SCRIPT.lua [-j N] [--list] [--set KEY=VALUE]… [--frames N] [--threads N] [--db FILE] [--json] [--quiet] [--lines]",
      "run a scene over lists of values; what is done already is left out", command_sweep},
     {"stress", "stress [CASE]… [--effect NAME]… [--quick | --full] [--precision f32|f64|both] [--simd NAME] [--threads N] [-j N] [--time-limit S]\n"
-               "                [--db FILE] [--json] [--quiet] [--verbose]   stress --list | --last | --measures  [--json]",
+               "                [--db FILE] [--json] [--quiet] [--verbose]   stress --list | --last  [--json]   stress --measures",
      "make the hard cases (scenes/stress) and hold each against what it must come to; --list: what they cover", command_stress},
     {"accuracy", "accuracy SCENE [--axis NAME]… [--levels N] [--measure NAME]… [--frames N] [--budget SECONDS] [--set KEY=VALUE]… [--recipe NAME] [--list]\n"
                  "         [-j N] [--threads N] [--precision f32|f64] [--simd NAME] [--out DIR] [--csv FILE] [--db FILE] [--json] [--quiet]",

@@ -110,6 +110,8 @@ def test_wrong_words():
         box.case("falls", "nil")
         code, _, err = box.stress("falls")
         check(code == 2 and "expect" in err, f"a case without expectations: {code} {err}")
+        code, out, err = box.stress("--measures", "--json")
+        check(code == 2 and "--measures" in err and not out, f"a table for people asked for as JSON: {code}: {out[:80]}{err}")
 
 
 def test_every_effect_has_a_case():

@@ -262,11 +262,6 @@ static status step(sheet *s, double time, double dt, sheet_fault *fault, report 
     return reduce_results(s, dt, fault, r);
 }
 
-static void push(sheet *s, const double *change) {
-    for (int64_t i = 0; i < s->count; i++)
-        for (int c = 0; c < 3; c++) s->velocity[((int64_t)(s->place[i] / PACK) * 3 + c) * PACK + s->place[i] % PACK] += (real)change[3 * i + c];
-}
-
 static void surround(sheet *s, const double gravity[3], double cfl) {
     memcpy(s->definition.gravity, gravity, sizeof s->definition.gravity);
     s->definition.cfl = cfl;
@@ -324,7 +319,7 @@ static int stage_names(uint32_t mask, char (*text)[48], int limit) {
 
 const sheet_engine sheet_engine_table = {
     .simd = TEXT(SHEET_SIMD_NAME), .precision = SUNDER_PRECISION, .effects = sheet_effect_table, .effect_count = SHEET_EFFECTS,
-    .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .step = step, .push = push, .settle = sheet_diffuse,
+    .create = create, .destroy = destroy, .boundaries = boundaries, .limits = limits, .step = step, .touch = &sheet_touch_table, .settle = sheet_diffuse,
     .measure = sheet_measure, .read = sheet_read, .components = components, .bonds = sheet_bonds, .calibration = calibration,
     .save = sheet_save, .restore = sheet_restore, .stages = stage_names, .feed = feed, .surround = surround, .refresh = refresh,
     .bytes_per_particle = bytes_per_particle, .rates = sheet_rates_report, .levels = sheet_rates_levels, .phases = phases,

@@ -169,11 +169,11 @@ static double broken_share(const sheet *s, int64_t place) {
     return total ? (double)broken / total : 0;
 }
 
-enum { READ_POSITION, READ_VELOCITY, READ_AREA, READ_HELD, READ_BROKEN, READ_DIFFUSED };
+enum { READ_POSITION, READ_VELOCITY, READ_AREA, READ_BROKEN, READ_DIFFUSED };
 
 static int find_field(const sheet *s, const char *name) {
-    static const char *const names[] = {"position", "velocity", "area", "held", "broken", "diffused"};
-    for (int i = 0; i < 6; i++)
+    static const char *const names[] = {"position", "velocity", "area", "broken", "diffused"};
+    for (int i = 0; i < 5; i++)
         if (strcmp(names[i], name) == 0) return (i == READ_BROKEN && !s->history) || (i == READ_DIFFUSED && !s->conduct) ? -1 : i;
     return -1;
 }
@@ -188,7 +188,6 @@ int sheet_read(const sheet *s, const char *name, double *out) {
             if (field == READ_POSITION) *to = coordinate_of(s->node + place * NODE, c);
             else if (field == READ_VELOCITY) *to = (double)s->velocity[(pack * 3 + c) * PACK + lane];
             else if (field == READ_AREA) *to = (double)s->area[place];
-            else if (field == READ_HELD) *to = s->holder[place] > 0;
             else *to = field == READ_BROKEN ? broken_share(s, place) : theta_of(s, place);
         }
     }

@@ -16,6 +16,7 @@
 enum { SHEET_MATERIALS = 16, SHEET_BODIES = 32, SHEET_BOUNDARIES = 64, SHEET_SOURCES = 64, SHEET_NOTCHES = 64, SHEET_BINS = 50 };
 /* A step is divided by 2^l, l < SHEET_LEVELS, where the effect multirate asks for it. */
 enum { SHEET_LEVELS = 8 };
+enum { SHEET_PACK = 16 }; /* neighbours that are stored together */
 enum { SHEET_PHASE_BONDS, SHEET_PHASE_DIFFUSION, SHEET_PHASE_CONTACT, SHEET_PHASE_ADVANCE, SHEET_PHASES };
 
 /* The `provides` of the effects that are laws of a bond, and the `needs` of those that build on one. */
@@ -114,6 +115,16 @@ typedef struct sheet_fault {
     double value;
 } sheet_fault;
 
+/* How contact reaches the particles that touch something: by pack of SHEET_PACK neighbours. All are called between a step and the next, of different packs
+ * by several threads at once. */
+typedef struct sheet_touch {
+    int32_t (*packs)(const sheet *s);
+    /* How many particles a pack has, where they are, and their ids. */
+    int (*places)(const sheet *s, int32_t pack, double place[SHEET_PACK][3], int32_t id[SHEET_PACK]);
+    void (*motion)(const sheet *s, int32_t pack, double velocity[SHEET_PACK][3], bool held[SHEET_PACK]); /* held: by a grip */
+    void (*push)(sheet *s, int32_t pack, const double change[SHEET_PACK][3]); /* adds to velocities */
+} sheet_touch;
+
 typedef struct sheet_engine {
     const char *simd;
     int precision;
@@ -128,11 +139,11 @@ typedef struct sheet_engine {
     void (*limits)(const sheet *s, double *limit);
     /* One step of symplectic Euler from `time`. STATUS_DIVERGED when the new state is not finite or runs away; `fault` says where. */
     status (*step)(sheet *s, double time, double dt, sheet_fault *fault, report *r);
-    void (*push)(sheet *s, const double *change); /* adds change[count][3], in order of id, to velocities; between steps */
+    const sheet_touch *touch;
     /* Diffusion runs every n-th step: this brings it to `time`, as a frame must have it. */
     void (*settle)(sheet *s, double time);
     status (*measure)(const sheet *s, sheet_measures *m, report *r); /* errors: out of memory */
-    /* Copies a field in order of id into out[count][components]: "position", "velocity", "area", "held" (1: by a grip), "broken" (fraction
+    /* Copies a field in order of id into out[count][components]: "position", "velocity", "area", "broken" (fraction
      * of bonds), "diffused". Returns components, 0 when there is no such field. */
     int (*read)(const sheet *s, const char *field, double *out);
     int (*components)(const sheet *s, const char *field);

@@ -18,7 +18,7 @@
 #include "sheet/variant.h"
 
 enum {
-    PACK = 16,
+    PACK = SHEET_PACK,
     PACK_PARTS = PACK / VEC_LANES,
     NODE = 8,        /* x y z θ, low parts of x y z, nothing */
     NODE_LOW = 4,
@@ -181,6 +181,8 @@ SIMD_INLINE double coordinate_of(const real *node, int c) {
 status sheet_layout(sheet *s, const sheet_network *n, report *r);
 status sheet_refill(sheet *s, const sheet_network *n, report *r);
 void sheet_layout_free(sheet *s);
+/* touch.c */
+extern const sheet_touch sheet_touch_table;
 /* advance.c */
 void sheet_take_hold(sheet *s);
 /* Moves the packs that are due at a part of a step. */

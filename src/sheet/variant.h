@@ -17,6 +17,7 @@
 
 #define sheet_effect_table SHEET_VARIANT(sheet_effect_table)
 #define sheet_engine_table SHEET_VARIANT(sheet_engine_table)
+#define sheet_touch_table SHEET_VARIANT(sheet_touch_table)
 #define sheet_layout SHEET_VARIANT(sheet_layout)
 #define sheet_refill SHEET_VARIANT(sheet_refill)
 #define sheet_layout_free SHEET_VARIANT(sheet_layout_free)

@@ -4,70 +4,89 @@
  * flat surface; −∇ρ points out of it, and (ρ − ½)/|∇ρ| is how deep x lies. The solid's velocity there and its answer to an impulse −J,
  *     u = Σ w_q (v_q + C_q (x − x_q)),   w_q = m_q W_q/Σ m W;   v_q −= w_q J/m_q,   C_q −= w_q J (x − x_q)ᵀ/(m_q D),
  * are adjoint in the metric of the kinetic energy ½ m (|v|² + D |C|²), D the transfer's. So momentum and angular momentum, of which m D ε:C is the
- * affine part, are kept to round-off; and an impulse that stops what approaches, within Coulomb's cone, takes energy away. Sheet particles
- * are gone through once, in order, each seeing what those before it did: the same bits at any number of threads, and no energy from many that
- * share a piece of solid.
+ * affine part, are kept to round-off; and an impulse that stops what approaches, within Coulomb's cone, takes energy away. Each sheet particle
+ * sees what those before it did: no energy comes from many that share a piece of solid. Groups of them that share none go side by side, so the same
+ * bits come at any number of threads.
  *
- * Outside, the approach may be as fast as closes the gap in this step, so nothing comes to lie deep; what lies within is let out slowly. */
+ * Outside, the approach may be as fast as closes the gap in this step, so nothing comes to lie deep; what lies within is let out slowly. Being impulses, not
+ * springs, they have no stiffness, and need no step shorter than those of what they join. */
 #include "sim/contact.h"
 
 #include "base/memory.h"
-#include "base/random.h"
+#include "base/threads.h"
+#include "sim/contact_near.h"
 
 #include <math.h>
 #include <string.h>
-
-enum { NEIGHBOURS_MOST = 512 };
 
 static const double REACH = 1.25;      /* H over the grid's spacing */
 static const double RECOVERY = 0.01;   /* of the depth, in a step */
 static const double LEAST_SLOPE = 0.1; /* of |∇ρ| H: deeper inside there is no telling where out is */
 
+/* A worker's hands: the solid particles around a group, and of those the ones around one sheet particle. */
+typedef struct contact_hands {
+    int32_t capacity, around, count;
+    int32_t *which;    // [capacity], indices of the near solids, of those around
+    double *place;     // [3][capacity], theirs
+    double *left;      // [capacity], 1 − r²/H² of those from one particle
+    int32_t *near;     // [capacity], of those around one particle, again by index of the near solids
+    double *weight;    // [capacity], m W, then w
+} contact_hands;
+
 struct sheet_contact {
-    int64_t solids, sheets, cells; /* cells: of the table, a power of two */
-    double reach, inertia;         /* H; D */
-    double *place, *velocity, *affine, *volume, *mass; // of solids: [solids][3], [3], [9], [1], [1]
-    double *change;                                    // [solids][12]: of velocity and affine velocity
-    double *sheet_place, *sheet_velocity, *sheet_change, *sheet_mass, *held; // [sheets][3], [3], [3], [1], [1]: 1 where a grip has it
-    int32_t *head, *next;                              // [cells], [solids]; −1: none
+    contact_near near;
+    double inertia;                // D
+    int64_t solids, sheets;
+    double *volume, *mass;         // [solids], by id
+    double *sheet_mass;            // [sheets], by id
+    double (*change)[SHEET_PACK][3]; // [packs], of sheets' velocities
+    int threads;
+    contact_hands *hands;          // [threads]
 };
 
-/* One sheet particle and the solid around it. */
+/* What one sheet particle sees of the solid. */
 typedef struct touch {
-    int count;
-    int32_t near[NEIGHBOURS_MOST];
-    double weight[NEIGHBOURS_MOST]; /* m W, then w */
-    double full, slope[3];          /* ρ, ∇ρ */
+    double full, slope[3]; /* ρ, ∇ρ */
+    double velocity[3];    /* u */
+    double mobility;       /* by how much it gives way to an impulse */
 } touch;
 
 /* ---- memory ------------------------------------------------------------------------------------------------------ */
 
-/* Every array: where its address is kept, and its bytes. */
-typedef struct contact_array {
-    void *address;
-    size_t bytes;
-} contact_array;
+static void free_hands(contact_hands *h) {
+    size_t capacity = (size_t)h->capacity;
+    memory_free(h->which, capacity * sizeof *h->which);
+    memory_free(h->place, 3 * capacity * sizeof *h->place);
+    memory_free(h->left, capacity * sizeof *h->left);
+    memory_free(h->near, capacity * sizeof *h->near);
+    memory_free(h->weight, capacity * sizeof *h->weight);
+    *h = (contact_hands){0};
+}
 
-enum { ARRAYS = 13 };
-
-static void list_arrays(sheet_contact *c, contact_array list[ARRAYS]) {
-    size_t solids = (size_t)c->solids * sizeof(double), sheets = (size_t)c->sheets * sizeof(double);
-    const contact_array all[ARRAYS] = {{&c->place, 3 * solids}, {&c->velocity, 3 * solids}, {&c->affine, 9 * solids}, {&c->volume, solids},
-                                       {&c->mass, solids}, {&c->change, 12 * solids}, {&c->sheet_place, 3 * sheets}, {&c->sheet_velocity, 3 * sheets},
-                                       {&c->sheet_change, 3 * sheets}, {&c->sheet_mass, sheets}, {&c->held, sheets}, {&c->head, (size_t)c->cells * sizeof *c->head},
-                                       {&c->next, (size_t)c->solids * sizeof *c->next}};
-    memcpy(list, all, sizeof all);
+/* What is in them is lost. */
+static bool reserve_hands(contact_hands *h, int32_t need) {
+    if (need <= h->capacity) return true;
+    free_hands(h);
+    h->capacity = need + need / 2 + 64;
+    h->which = memory_allocate_array((size_t)h->capacity, sizeof *h->which);
+    h->place = memory_allocate_array((size_t)h->capacity, 3 * sizeof *h->place);
+    h->left = memory_allocate_array((size_t)h->capacity, sizeof *h->left);
+    h->near = memory_allocate_array((size_t)h->capacity, sizeof *h->near);
+    h->weight = memory_allocate_array((size_t)h->capacity, sizeof *h->weight);
+    if (h->which && h->place && h->left && h->near && h->weight) return true;
+    free_hands(h);
+    return false;
 }
 
 void contact_destroy(sheet_contact *c) {
-    contact_array list[ARRAYS];
     if (!c) return;
-    list_arrays(c, list);
-    for (int i = 0; i < ARRAYS; i++) {
-        void *data;
-        memcpy(&data, list[i].address, sizeof data);
-        memory_free(data, data ? list[i].bytes : 0);
-    }
+    for (int t = 0; c->hands && t < c->threads; t++) free_hands(&c->hands[t]);
+    memory_free(c->hands, (size_t)c->threads * sizeof *c->hands);
+    memory_free(c->volume, (size_t)c->solids * sizeof *c->volume);
+    memory_free(c->mass, (size_t)c->solids * sizeof *c->mass);
+    memory_free(c->sheet_mass, (size_t)c->sheets * sizeof *c->sheet_mass);
+    memory_free(c->change, (size_t)c->near.pack_count * sizeof *c->change);
+    contact_near_free(&c->near);
     memory_free(c, sizeof *c);
 }
 
@@ -83,18 +102,18 @@ static void find_masses(const simulation *s, sheet_contact *c) {
     }
 }
 
-sheet_contact *contact_create(const simulation *s) {
+sheet_contact *contact_create(const simulation *s, int threads) {
     sheet_contact *c = memory_allocate(sizeof *c);
-    contact_array list[ARRAYS];
     if (!c) return NULL;
-    *c = (sheet_contact){.solids = s->particles.count, .sheets = s->sheet_points.count, .cells = 1024, .reach = REACH * s->particles.dx};
-    while (c->cells < c->solids) c->cells *= 2;
+    c->solids = s->particles.count, c->sheets = s->sheet_points.count, c->threads = threads > 0 ? threads : 1;
     c->inertia = s->particles.dx * s->particles.dx / (s->scene->kernel == KERNEL_QUADRATIC ? 4 : 3);
-    list_arrays(c, list);
-    for (int i = 0; i < ARRAYS; i++) {
-        void *data = memory_allocate(list[i].bytes);
-        memcpy(list[i].address, &data, sizeof data);
-        if (data) continue;
+    bool fits = contact_near_create(&c->near, s, REACH * s->particles.dx, c->threads);
+    c->volume = memory_allocate_array((size_t)c->solids, sizeof *c->volume);
+    c->mass = memory_allocate_array((size_t)c->solids, sizeof *c->mass);
+    c->sheet_mass = memory_allocate_array((size_t)c->sheets, sizeof *c->sheet_mass);
+    c->change = memory_allocate_array((size_t)c->near.pack_count, sizeof *c->change);
+    c->hands = memory_allocate_array((size_t)c->threads, sizeof *c->hands);
+    if (!fits || !c->volume || !c->mass || !c->sheet_mass || !c->change || !c->hands) {
         contact_destroy(c);
         return NULL;
     }
@@ -104,147 +123,159 @@ sheet_contact *contact_create(const simulation *s) {
 
 /* ---- who is near ------------------------------------------------------------------------------------------------- */
 
-static void cell_of(const sheet_contact *c, const double *x, int64_t cell[3]) {
-    for (int k = 0; k < 3; k++) cell[k] = (int64_t)floor(x[k] / c->reach);
-}
-
-static int64_t slot_of(const sheet_contact *c, const int64_t cell[3]) {
-    return (int64_t)(random_mix((uint64_t)cell[0] ^ random_mix((uint64_t)cell[1] ^ random_mix((uint64_t)cell[2]))) & (uint64_t)(c->cells - 1));
-}
-
-/* The box that sheets fill, and H around it. */
-static void sheet_box(const sheet_contact *c, double low[3], double high[3]) {
-    for (int k = 0; k < 3; k++) low[k] = HUGE_VAL, high[k] = -HUGE_VAL;
-    for (int64_t i = 0; i < 3 * c->sheets; i++) {
-        low[i % 3] = fmin(low[i % 3], c->sheet_place[i] - c->reach);
-        high[i % 3] = fmax(high[i % 3], c->sheet_place[i] + c->reach);
-    }
-}
-
-static bool within(const double *x, const double low[3], const double high[3]) {
-    return x[0] > low[0] && x[1] > low[1] && x[2] > low[2] && x[0] < high[0] && x[1] < high[1] && x[2] < high[2];
-}
-
-/* Solid particles in the sheets' box, by cell, each cell's ascending; whether there are any. */
-static bool fill_cells(sheet_contact *c) {
-    double low[3], high[3];
-    bool any = false;
-    sheet_box(c, low, high);
-    memset(c->head, 0xff, (size_t)c->cells * sizeof *c->head);
-    for (int64_t q = c->solids - 1; q >= 0; q--) {
-        int64_t cell[3];
-        if (!within(c->place + 3 * q, low, high)) continue;
-        cell_of(c, c->place + 3 * q, cell);
-        int64_t slot = slot_of(c, cell);
-        c->next[q] = c->head[slot];
-        c->head[slot] = (int32_t)q;
-        any = true;
-    }
-    return any;
-}
-
-/* Adds what a solid particle is to a place at the distance r from it. */
-static void add_neighbour(const sheet_contact *c, int32_t q, const double r[3], touch *t) {
-    static const double PI = 3.14159265358979323846;
-    double H = c->reach, left = 1 - (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]) / (H * H), unit = 315 / (64 * PI * H * H * H);
-    if (left <= 0 || t->count == NEIGHBOURS_MOST) return;
-    double W = unit * left * left * left, steep = -6 * unit * left * left / (H * H) * c->volume[q];
-    t->full += c->volume[q] * W;
-    for (int k = 0; k < 3; k++) t->slope[k] += steep * r[k];
-    t->near[t->count] = q;
-    t->weight[t->count++] = c->mass[q] * W;
-}
-
-static void find_neighbours(const sheet_contact *c, const double *x, touch *t) {
-    int64_t middle[3], cell[3], own[3];
-    t->count = 0;
-    t->full = t->slope[0] = t->slope[1] = t->slope[2] = 0;
-    cell_of(c, x, middle);
-    for (int n = 0; n < 27; n++) {
-        cell[0] = middle[0] + n / 9 - 1, cell[1] = middle[1] + n / 3 % 3 - 1, cell[2] = middle[2] + n % 3 - 1;
-        for (int32_t q = c->head[slot_of(c, cell)]; q >= 0; q = c->next[q]) {
-            const double *y = c->place + 3 * q, r[3] = {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
-            cell_of(c, y, own);
-            if (memcmp(own, cell, sizeof own) == 0) add_neighbour(c, q, r, t);
+static void take_surroundings(const sheet_contact *c, const contact_group *g, contact_hands *h) {
+    const contact_near *n = &c->near;
+    h->around = 0;
+    for (int32_t k = 0; k < g->near_count; k++)
+        for (int32_t q = n->cells[g->near[k]].first; q >= 0; q = n->solid_next[q]) {
+            const double *x = n->solid_place[q];
+            if (x[0] < g->low[0] || x[1] < g->low[1] || x[2] < g->low[2] || x[0] > g->high[0] || x[1] > g->high[1] || x[2] > g->high[2]) continue;
+            for (int axis = 0; axis < 3; axis++) h->place[axis * h->capacity + h->around] = x[axis];
+            h->which[h->around++] = q;
         }
+}
+
+/* What is left of the reach's square, a few at a time: a loop that a compiler turns into vectors. */
+static void measure_distances(const double x[3], double inverse, int32_t count, const double *restrict px, const double *restrict py, const double *restrict pz,
+                              double *restrict left) {
+    enum { TOGETHER = 8 };
+    int32_t i = 0;
+    for (; i + TOGETHER <= count; i += TOGETHER)
+        for (int k = 0; k < TOGETHER; k++) {
+            double a = x[0] - px[i + k], b = x[1] - py[i + k], c = x[2] - pz[i + k];
+            left[i + k] = 1 - (a * a + b * b + c * c) * inverse;
+        }
+    for (; i < count; i++) {
+        double a = x[0] - px[i], b = x[1] - py[i], c = x[2] - pz[i];
+        left[i] = 1 - (a * a + b * b + c * c) * inverse;
+    }
+}
+
+/* Leaves m W in the hands, and ρ and ∇ρ in t. */
+static void take_neighbours(const sheet_contact *c, const double x[3], contact_hands *h, touch *t) {
+    static const double PI = 3.14159265358979323846;
+    double H2 = c->near.reach * c->near.reach, unit = 315 / (64 * PI * H2 * c->near.reach);
+    const double *place[3] = {h->place, h->place + h->capacity, h->place + 2 * (size_t)h->capacity};
+    measure_distances(x, 1 / H2, h->around, place[0], place[1], place[2], h->left);
+    *t = (touch){0};
+    h->count = 0;
+    for (int32_t i = 0; i < h->around; i++) {
+        double left = h->left[i];
+        if (left <= 0) continue;
+        int32_t id = c->near.solid_id[h->which[i]];
+        double W = unit * left * left * left, steep = -6 * unit * left * left / H2 * c->volume[id];
+        t->full += c->volume[id] * W;
+        for (int k = 0; k < 3; k++) t->slope[k] += steep * (x[k] - place[k][i]);
+        h->near[h->count] = h->which[i];
+        h->weight[h->count++] = c->mass[id] * W;
     }
 }
 
 /* ---- impulses ---------------------------------------------------------------------------------------------------- */
 
-/* The solid's velocity at x, as it is by now; how much of an impulse there it gives way by; `weight` becomes w. */
-static double solid_velocity(const sheet_contact *c, const double *x, touch *t, double u[3]) {
-    double sum = 0, mobility = 0;
-    for (int i = 0; i < t->count; i++) sum += t->weight[i];
-    u[0] = u[1] = u[2] = 0;
-    for (int i = 0; i < t->count; i++) {
-        int32_t q = t->near[i];
-        double w = t->weight[i] /= sum, r[3], square = 0;
-        const double *v = c->velocity + 3 * q, *C = c->affine + 9 * q;
-        for (int k = 0; k < 3; k++) r[k] = x[k] - c->place[3 * q + k], square += r[k] * r[k];
-        for (int k = 0; k < 3; k++) u[k] += w * (v[k] + C[3 * k] * r[0] + C[3 * k + 1] * r[1] + C[3 * k + 2] * r[2]);
-        mobility += w * w * (1 + square / c->inertia) / c->mass[q];
+/* The solid's velocity at x, as it is by now, and its mobility; the weights become w. */
+static void see_solid(const sheet_contact *c, const double x[3], contact_hands *h, touch *t) {
+    double sum = 0;
+    for (int32_t i = 0; i < h->count; i++) sum += h->weight[i];
+    for (int32_t i = 0; i < h->count; i++) {
+        int32_t q = h->near[i];
+        double w = h->weight[i] /= sum, r[3], square = 0;
+        const double *v = c->near.solid_motion[q], *C = v + 3;
+        for (int k = 0; k < 3; k++) r[k] = x[k] - c->near.solid_place[q][k], square += r[k] * r[k];
+        for (int k = 0; k < 3; k++) t->velocity[k] += w * (v[k] + C[3 * k] * r[0] + C[3 * k + 1] * r[1] + C[3 * k + 2] * r[2]);
+        t->mobility += w * w * (1 + square / c->inertia) / c->mass[c->near.solid_id[q]];
     }
-    return mobility;
 }
 
 /* J on the sheet particle, −J on the solid around it. One that a grip holds does not move, but keeps the impulse until the grip takes it. */
-static void exchange(sheet_contact *c, int64_t p, const touch *t, const double J[3]) {
+static void exchange(sheet_contact *c, int32_t p, const contact_hands *h, const double J[3]) {
+    contact_near *n = &c->near;
+    double inverse = 1 / c->sheet_mass[n->sheet_id[p]];
     for (int k = 0; k < 3; k++) {
-        c->sheet_velocity[3 * p + k] += (1 - c->held[p]) * J[k] / c->sheet_mass[p];
-        c->sheet_change[3 * p + k] += J[k] / c->sheet_mass[p];
+        if (!n->sheet_held[p]) n->sheet_velocity[p][k] += J[k] * inverse;
+        c->change[p / SHEET_PACK][p % SHEET_PACK][k] += J[k] * inverse;
     }
-    for (int i = 0; i < t->count; i++) {
-        int32_t q = t->near[i];
-        double share = t->weight[i] / c->mass[q];
+    for (int32_t i = 0; i < h->count; i++) {
+        int32_t q = h->near[i];
+        double share = h->weight[i] / c->mass[n->solid_id[q]], *motion = n->solid_motion[q];
+        n->solid_moved[q] = 1;
         for (int k = 0; k < 3; k++) {
             double step = -share * J[k];
-            c->velocity[3 * q + k] += step;
-            c->change[12 * q + k] += step;
-            for (int l = 0; l < 3; l++) {
-                double lean = step * (c->sheet_place[3 * p + l] - c->place[3 * q + l]) / c->inertia;
-                c->affine[9 * q + 3 * k + l] += lean;
-                c->change[12 * q + 3 + 3 * k + l] += lean;
-            }
+            motion[k] += step;
+            for (int l = 0; l < 3; l++) motion[3 + 3 * k + l] += step * (n->sheet_place[p][l] - n->solid_place[q][l]) / c->inertia;
         }
     }
 }
 
-static void stop_particle(sheet_contact *c, int64_t p, double friction, double dt, touch *t) {
-    const double *x = c->sheet_place + 3 * p, *v = c->sheet_velocity + 3 * p;
-    find_neighbours(c, x, t);
-    double slope = sqrt(t->slope[0] * t->slope[0] + t->slope[1] * t->slope[1] + t->slope[2] * t->slope[2]), n[3], u[3], J[3];
-    if (!(slope * c->reach > LEAST_SLOPE)) return;
-    double depth = (t->full - 0.5) / slope, least = depth > 0 ? RECOVERY * fmin(depth, c->reach) / dt : depth / dt;
-    double mobility = solid_velocity(c, x, t, u) + (1 - c->held[p]) / c->sheet_mass[p], along = 0, across = 0;
-    for (int k = 0; k < 3; k++) n[k] = -t->slope[k] / slope, along += (v[k] - u[k]) * n[k];
+static void stop_particle(sheet_contact *c, int32_t p, double friction, double dt, contact_hands *h) {
+    const double *x = c->near.sheet_place[p], *v = c->near.sheet_velocity[p];
+    touch t;
+    take_neighbours(c, x, h, &t);
+    double slope = sqrt(t.slope[0] * t.slope[0] + t.slope[1] * t.slope[1] + t.slope[2] * t.slope[2]), n[3], J[3];
+    if (!(slope * c->near.reach > LEAST_SLOPE)) return;
+    double depth = (t.full - 0.5) / slope, least = depth > 0 ? RECOVERY * fmin(depth, c->near.reach) / dt : depth / dt;
+    see_solid(c, x, h, &t);
+    double mobility = t.mobility + (c->near.sheet_held[p] ? 0 : 1 / c->sheet_mass[c->near.sheet_id[p]]), along = 0, across = 0;
+    for (int k = 0; k < 3; k++) n[k] = -t.slope[k] / slope, along += (v[k] - t.velocity[k]) * n[k];
     if (along >= least) return;
     double push = (least - along) / mobility;
     for (int k = 0; k < 3; k++) {
-        double slip = v[k] - u[k] - along * n[k];
+        double slip = v[k] - t.velocity[k] - along * n[k];
         J[k] = slip;
         across += slip * slip;
     }
     across = sqrt(across);
     double hold = across > 0 ? fmin(1 / mobility, friction * push / across) : 0;
     for (int k = 0; k < 3; k++) J[k] = push * n[k] - hold * J[k];
-    exchange(c, p, t, J);
+    exchange(c, p, h, J);
 }
 
-void contact_apply(simulation *s, double dt) {
+/* ---- the step ---------------------------------------------------------------------------------------------------- */
+
+typedef struct contact_step {
+    sheet_contact *contact;
+    simulation *state;
+    const int32_t *groups; /* of one colour */
+    double friction, dt;
+} contact_step;
+
+static void settle_group(void *context, int64_t i, int worker) {
+    const contact_step *step = context;
+    sheet_contact *c = step->contact;
+    const contact_group *g = &c->near.groups[step->groups[i]];
+    contact_hands *h = &c->hands[worker];
+    take_surroundings(c, g, h);
+    for (int32_t p = g->first; p >= 0 && h->around > 0; p = c->near.sheet_next[p]) stop_particle(c, p, step->friction, step->dt, h);
+}
+
+static void move_block(void *context, int64_t i, int worker) {
+    (void)worker;
+    const contact_step *step = context;
+    const contact_near *n = &step->contact->near;
+    for (int32_t q = n->block_start[i]; q < n->block_start[i + 1]; q++)
+        if (n->solid_moved[q]) step->state->engine->touch->move(step->state->solid, n->solid_at[q], n->solid_motion[q]);
+}
+
+static void push_pack(void *context, int64_t i, int worker) {
+    (void)worker;
+    const contact_step *step = context;
+    int32_t pack = step->contact->near.near_packs[i];
+    step->state->sheets->touch->push(step->state->sheet, pack, step->contact->change[pack]);
+}
+
+status contact_apply(simulation *s, double dt, report *r) {
     sheet_contact *c = s->contact;
-    touch t;
-    s->engine->read(s->solid, "position", c->place);
-    s->sheets->read(s->sheet, "position", c->sheet_place);
-    if (!fill_cells(c)) return;
-    s->engine->read(s->solid, "velocity", c->velocity);
-    s->engine->read(s->solid, "affine_velocity", c->affine);
-    s->sheets->read(s->sheet, "velocity", c->sheet_velocity);
-    s->sheets->read(s->sheet, "held", c->held);
-    memset(c->change, 0, 12 * (size_t)c->solids * sizeof *c->change);
-    memset(c->sheet_change, 0, 3 * (size_t)c->sheets * sizeof *c->sheet_change);
-    double friction = s->scene->effects[effect_index("contact")].value[0][0];
-    for (int64_t p = 0; p < c->sheets; p++) stop_particle(c, p, friction, dt, &t);
-    s->engine->push(s->solid, c->change);
-    s->sheets->push(s->sheet, c->sheet_change);
+    contact_step step = {.contact = c, .state = s, .friction = s->scene->effects[effect_index("contact")].value[0][0], .dt = dt};
+    status code = contact_near_find(&c->near, s, r);
+    if (code != STATUS_OK || c->near.group_count == 0) return code;
+    for (int t = 0; t < c->threads; t++)
+        if (!reserve_hands(&c->hands[t], c->near.most)) return report_set(r, STATUS_SYSTEM, "out of memory for contact");
+    for (int32_t k = 0; k < c->near.near_pack_count; k++) memset(c->change[c->near.near_packs[k]], 0, sizeof *c->change);
+    for (int colour = 0; colour < CONTACT_COLOURS; colour++) {
+        step.groups = c->near.order + c->near.colour_start[colour];
+        parallel_for(c->threads, c->near.colour_start[colour + 1] - c->near.colour_start[colour], 1, settle_group, &step);
+    }
+    parallel_for(c->threads, c->near.block_count, 1, move_block, &step);
+    parallel_for(c->threads, c->near.near_pack_count, 8, push_pack, &step);
+    return STATUS_OK;
 }

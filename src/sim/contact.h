@@ -7,10 +7,10 @@
 typedef struct sheet_contact sheet_contact;
 
 /* NULL without memory. The simulation has both engines, and its solids are particles. */
-sheet_contact *contact_create(const simulation *s);
+sheet_contact *contact_create(const simulation *s, int threads);
 void contact_destroy(sheet_contact *c);
 
-/* After both engines' step of dt: what presses is stopped, with friction. */
-void contact_apply(simulation *s, double dt);
+/* After both engines' step of dt: what presses is stopped, with friction. Errors: out of memory, where more is near than ever before. */
+status contact_apply(simulation *s, double dt, report *r);
 
 #endif

@@ -40,5 +40,6 @@ int simulation_efforts(const simulation *s, simulation_effort *out, int limit) {
         s->sheets->phases(s->sheet, phase);
         for (int p = 0; p < SHEET_PHASES; p++) add(&list, of_sheets[p], phase[p], false);
     }
+    if (s->contact) add(&list, "sheets on solids", s->contact_seconds, false);
     return list.count;
 }

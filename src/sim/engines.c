@@ -1,5 +1,6 @@
 /* One face for both engines: a simulation has one, or the other, or both side by side. They share the step, gravity, grips and colliders; solids and
  * sheets pass through one another unless the scene says `contact`. */
+#include "base/clock.h"
 #include "base/memory.h"
 #include "sim/contact.h"
 
@@ -68,7 +69,10 @@ status engine_step(simulation *s, double dt, report *r) {
     share_boundaries(s);
     status code = s->solid ? s->engine->step(s->solid, dt, &fault, r) : STATUS_OK;
     if (code == STATUS_OK && s->sheet) code = s->sheets->step(s->sheet, s->time, dt, &sheet_trouble, r);
-    if (code == STATUS_OK && s->contact) contact_apply(s, dt);
+    if (code != STATUS_OK || !s->contact) return code;
+    double start = clock_seconds();
+    code = contact_apply(s, dt, r);
+    s->contact_seconds += clock_seconds() - start;
     return code;
 }
 

@@ -16,6 +16,7 @@ struct simulation {
     sheet *sheet; /* or NULL */
     sheet_particles sheet_points; /* stay: the engine borrows rest places and sources */
     struct sheet_contact *contact; /* NULL unless the scene has both kinds and says so */
+    double contact_seconds;        /* since the start */
     int64_t count;
     uint8_t *bodies; // [count] where a scene has both, else NULL: those of the one kind
     body_particles particles; /* rest positions and bodies stay for measures; the rest is freed after loading */

@@ -129,7 +129,7 @@ static status create_engines(simulation *s, int threads, report *r) {
     s->count = s->particles.count + s->sheet_points.count;
     if (code == STATUS_OK && s->solid && s->sheet) code = join_bodies(s, r);
     if (code != STATUS_OK) return code;
-    if (s->solid && s->sheet && s->scene->effects[effect_index("contact")].on && !(s->contact = contact_create(s)))
+    if (s->solid && s->sheet && s->scene->effects[effect_index("contact")].on && !(s->contact = contact_create(s, threads)))
         return report_set(r, STATUS_SYSTEM, "out of memory for the contact of sheets and solids");
     make_plan(s, s->plan.mask, threads);
     if (s->solid) bodies_free_loading(&s->particles);

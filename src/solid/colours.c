@@ -63,14 +63,14 @@ status colours_assign(solid *s, report *r) {
     for (int32_t b = 0; b < s->block_count; b++) s->colour_blocks[fill[colour_of(s->blocks[b].coordinate, period)]++] = b;
     share_blocks(s);
     share_colours(s);
+    for (int32_t slot = 0; slot < s->slot_count; slot++) s->slot_block[slot] = -1;
+    for (int32_t b = 0; b < s->block_count; b++) s->slot_block[s->blocks[b].neighbour[NEIGHBOURS / 2]] = b;
     if (s->threads == 1) return STATUS_OK;
     s->wait_limit = period == 2 ? 26 : 124;
     status code = order_grow((void **)&s->waits, &s->wait_capacity, s->block_count * s->wait_limit, sizeof *s->waits, "the order of blocks", r);
     if (code == STATUS_OK)
         code = order_grow((void **)&s->block_done, &s->done_capacity, s->block_count, sizeof *s->block_done, "the order of blocks", r);
     if (code != STATUS_OK) return code;
-    for (int32_t slot = 0; slot < s->slot_count; slot++) s->slot_block[slot] = -1;
-    for (int32_t b = 0; b < s->block_count; b++) s->slot_block[s->blocks[b].neighbour[NEIGHBOURS / 2]] = b;
     parallel_for(s->threads, s->block_count, 8, list_waits, s);
     return STATUS_OK;
 }

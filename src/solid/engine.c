@@ -301,7 +301,7 @@ static bool knows(const effect *e) {
 
 const solid_engine solid_engine_table = {
     .simd = TEXT(SOLID_SIMD_NAME), .precision = SUNDER_PRECISION, .effects = solid_effects, .effect_count = SOLID_EFFECTS,
-    .create = create, .destroy = destroy, .boundaries = solid_boundaries, .limits = solid_limits, .sort = begin_frame, .step = step, .push = particles_push, .settle = diffusion_settle, .feed = diffusion_feed,
+    .create = create, .destroy = destroy, .boundaries = solid_boundaries, .limits = solid_limits, .sort = begin_frame, .step = step, .touch = &solid_touch_table, .settle = diffusion_settle, .feed = diffusion_feed,
     .measure = solid_measure, .read = solid_read, .components = components, .save = solid_save, .restore = solid_restore,
     .stages = stage_names, .knows = knows, .surround = solid_surround, .refresh = refresh, .bytes_per_particle = bytes_per_particle, .phases = solid_phases,
     .phase_names = {"sort", "p2g", "grid", "g2p"}, .effort = effort,

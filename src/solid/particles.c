@@ -210,14 +210,3 @@ int particles_read(const solid *s, const char *name, double *out) {
     }
     return f->components;
 }
-
-void particles_push(solid *s, const double *change) {
-    for (int32_t pack = 0; pack < s->pack_count; pack++)
-        for (int lane = 0; lane < PACK; lane++) {
-            int32_t id = s->id[pack * PACK + lane];
-            if (id < 0) continue;
-            const double *own = change + 12 * (int64_t)id;
-            for (int c = 0; c < 3; c++) field_at(&s->fields[FIELD_VELOCITY], pack, c, 0)[lane] += (real)own[c];
-            for (int c = 0; c < 9; c++) field_at(&s->fields[FIELD_AFFINE], pack, c, 0)[lane] += (real)own[3 + c];
-        }
-}

@@ -10,6 +10,7 @@
 #include "effect/kinds.h"
 #include "geom/rigid.h"
 
+#include <stdatomic.h>
 #include <stdint.h>
 
 enum { SOLID_MATERIALS = 32, SOLID_BOUNDARIES = 64, SOLID_BINS = 50, SOLID_PHASES = 4, SOLID_GIVEN = 8, SOLID_SOURCES = 64 };
@@ -88,6 +89,21 @@ typedef struct solid_fault {
     double value;
 } solid_fault;
 
+/* How contact reaches the particles that touch something: by block, which is by place. All are called between a step and the next, and those that take
+ * a const state by several threads at once. `at` is where a particle lies until then. */
+typedef struct solid_touch {
+    /* How many blocks there are, and a box that holds all particles. */
+    int32_t (*blocks)(const solid *s, double low[3], double high[3]);
+    /* Sets marks[block] of those with particles in a box, and perhaps of some that come near it; whether there are any. */
+    bool (*mark)(const solid *s, const double low[3], const double high[3], _Atomic uint8_t *marks);
+    int32_t (*population)(const solid *s, int32_t block);
+    /* A block's particles, in order of storage: place[population][3], at[population], id[population]. */
+    void (*places)(const solid *s, int32_t block, double *place, int32_t *at, int32_t *id);
+    /* Velocity and affine velocity of one particle, 3 + 9; `move` sets them, and of different particles may be called at once. */
+    void (*motion)(const solid *s, int32_t at, double motion[12]);
+    void (*move)(solid *s, int32_t at, const double motion[12]);
+} solid_touch;
+
 typedef struct solid_engine {
     const char *simd;
     int precision;
@@ -106,8 +122,7 @@ typedef struct solid_engine {
     status (*sort)(solid *s, report *r);
     /* One step of symplectic Euler. STATUS_DIVERGED when the new state is not finite or runs away; `fault` says where. */
     status (*step)(solid *s, double dt, solid_fault *fault, report *r);
-    /* Adds to the particles' velocities and affine velocities: change[count][3 + 9], in order of id; between steps. NULL: it has none of the latter. */
-    void (*push)(solid *s, const double *change);
+    const solid_touch *touch; /* NULL: it has no particles with affine velocities */
     /* Diffusion runs every n-th step: this brings it to `time`, as a frame must have it. NULL where nothing diffuses ever. Errors: out of memory. */
     status (*settle)(solid *s, double time, report *r);
     void (*feed)(solid *s, const source_feed *feeds); /* [source_count], between steps; NULL likewise */

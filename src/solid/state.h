@@ -320,7 +320,8 @@ status particles_load(solid *s, report *r);
 size_t particles_bytes(const solid *s); /* of all arrays of packs, sorting's included */
 void particles_free(solid *s);
 int particles_read(const solid *s, const char *field, double *out);
-void particles_push(solid *s, const double *change);
+/* touch.c */
+extern const solid_touch solid_touch_table;
 /* sort.c */
 status particles_sort(solid *s, report *r);
 /* grid.c */

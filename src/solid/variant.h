@@ -36,7 +36,7 @@
 #define particles_free SOLID_VARIANT(particles_free)
 #define particles_load SOLID_VARIANT(particles_load)
 #define particles_read SOLID_VARIANT(particles_read)
-#define particles_push SOLID_VARIANT(particles_push)
+#define solid_touch_table SOLID_VARIANT(solid_touch_table)
 #define order_reserve_hash SOLID_VARIANT(order_reserve_hash)
 #define order_clear_hash SOLID_VARIANT(order_clear_hash)
 #define order_grow SOLID_VARIANT(order_grow)

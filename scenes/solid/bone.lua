@@ -58,7 +58,7 @@ local rate = math.rad(p.turn)
 local function grip(side)
   return {
     name     = side < 0 and "knee" or "hip",
-    shape    = s.box { center = { 0, side * 0.22, 0 }, size = { 0.3, 0.18, 0.3 } },
+    shape    = s.box { center = { 0, side * 0.22, 0 }, size = { 0.2, 0.18, 0.3 } },
     velocity = ({ pull = { 0, side * p.pull, 0 }, twist = { 0, side * p.pull / 10, 0 } })[p.variant],
     spin     = ({ twist = { 0, side * rate, 0 }, bend = { 0, 0, rate } })[p.variant],
     pivot    = { 0, side * 0.13, 0 },

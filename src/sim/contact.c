@@ -21,6 +21,7 @@
 
 static const double REACH = 1.25;      /* H over the grid's spacing */
 static const double RECOVERY = 0.01;   /* of the depth, in a step */
+static const double ESCAPE = 0.025;    /* of the speed of the solid's waves: the most that recovery may be */
 static const double LEAST_SLOPE = 0.1; /* of |∇ρ| H: deeper inside there is no telling where out is */
 
 /* A worker's hands: the solid particles around a group, and of those the ones around one sheet particle. */
@@ -207,13 +208,23 @@ static void exchange(sheet_contact *c, int32_t p, const contact_hands *h, const 
     }
 }
 
-static void stop_particle(sheet_contact *c, int32_t p, double friction, double dt, contact_hands *h) {
+/* How a step acts. */
+typedef struct contact_step {
+    sheet_contact *contact;
+    simulation *state;
+    const int32_t *groups; /* of one colour */
+    double friction, dt;
+    double escape; /* the largest speed of what lies within on its way out */
+} contact_step;
+
+static void stop_particle(const contact_step *step, int32_t p, contact_hands *h) {
+    sheet_contact *c = step->contact;
     const double *x = c->near.sheet_place[p], *v = c->near.sheet_velocity[p];
     touch t;
     take_neighbours(c, x, h, &t);
     double slope = sqrt(t.slope[0] * t.slope[0] + t.slope[1] * t.slope[1] + t.slope[2] * t.slope[2]), n[3], J[3];
     if (!(slope * c->near.reach > LEAST_SLOPE)) return;
-    double depth = (t.full - 0.5) / slope, least = depth > 0 ? RECOVERY * fmin(depth, c->near.reach) / dt : depth / dt;
+    double depth = (t.full - 0.5) / slope, least = depth > 0 ? fmin(RECOVERY * depth / step->dt, step->escape) : depth / step->dt;
     see_solid(c, x, h, &t);
     double mobility = t.mobility + (c->near.sheet_held[p] ? 0 : 1 / c->sheet_mass[c->near.sheet_id[p]]), along = 0, across = 0;
     for (int k = 0; k < 3; k++) n[k] = -t.slope[k] / slope, along += (v[k] - t.velocity[k]) * n[k];
@@ -225,19 +236,19 @@ static void stop_particle(sheet_contact *c, int32_t p, double friction, double d
         across += slip * slip;
     }
     across = sqrt(across);
-    double hold = across > 0 ? fmin(1 / mobility, friction * push / across) : 0;
+    double hold = across > 0 ? fmin(1 / mobility, step->friction * push / across) : 0;
     for (int k = 0; k < 3; k++) J[k] = push * n[k] - hold * J[k];
     exchange(c, p, h, J);
 }
 
 /* ---- the step ---------------------------------------------------------------------------------------------------- */
 
-typedef struct contact_step {
-    sheet_contact *contact;
-    simulation *state;
-    const int32_t *groups; /* of one colour */
-    double friction, dt;
-} contact_step;
+/* However short the steps of a stiff sheet, what it is in is not torn apart by its way out. */
+static double escape_speed(const simulation *s) {
+    double limit[EFFECT_LIMIT];
+    s->engine->limits(s->solid, limit);
+    return ESCAPE * s->particles.dx / limit[effect_index("elastic")];
+}
 
 static void settle_group(void *context, int64_t i, int worker) {
     const contact_step *step = context;
@@ -245,7 +256,7 @@ static void settle_group(void *context, int64_t i, int worker) {
     const contact_group *g = &c->near.groups[step->groups[i]];
     contact_hands *h = &c->hands[worker];
     take_surroundings(c, g, h);
-    for (int32_t p = g->first; p >= 0 && h->around > 0; p = c->near.sheet_next[p]) stop_particle(c, p, step->friction, step->dt, h);
+    for (int32_t p = g->first; p >= 0 && h->around > 0; p = c->near.sheet_next[p]) stop_particle(step, p, h);
 }
 
 static void move_block(void *context, int64_t i, int worker) {
@@ -265,7 +276,7 @@ static void push_pack(void *context, int64_t i, int worker) {
 
 status contact_apply(simulation *s, double dt, report *r) {
     sheet_contact *c = s->contact;
-    contact_step step = {.contact = c, .state = s, .friction = s->scene->effects[effect_index("contact")].value[0][0], .dt = dt};
+    contact_step step = {.contact = c, .state = s, .friction = s->scene->effects[effect_index("contact")].value[0][0], .dt = dt, .escape = escape_speed(s)};
     status code = contact_near_find(&c->near, s, r);
     if (code != STATUS_OK || c->near.group_count == 0) return code;
     for (int t = 0; t < c->threads; t++)

@@ -367,7 +367,20 @@ static void a_fast_ball_does_not_pass(void) {
     scene_destroy(s);
 }
 
+static void gaps_are_warned_of(void) {
+    for (int k = 0; k < 2; k++) {
+        scene *s = thrown(0.4);
+        s->sheets[0].spacing = k ? 0.051 : 0.049; /* dx is 0.04 */
+        simulation *sim = test_simulation(s, 64, "auto", 1);
+        const char *said = sim ? simulation_take_warning(sim) : NULL;
+        CHECK(sim && (said && said[0] != '\0') == (k == 1));
+        simulation_destroy(sim);
+        scene_destroy(s);
+    }
+}
+
 int main(void) {
+    RUN(gaps_are_warned_of);
     RUN(nothing_is_lost);
     RUN(both_sides_of_a_film_are_alike);
     RUN(bits_do_not_depend_on_threads);

@@ -8,6 +8,7 @@
 #include <errno.h>
 #include <getopt.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -182,18 +183,20 @@ static int parse(run_options *o, int count, char **arguments) {
 
 /* ---- plain progress ---------------------------------------------------------------------------------------------- */
 
-static session *interrupted_session;
+static _Atomic(session *) interrupted_session;
 static volatile sig_atomic_t interruptions;
 
 /* Both requests store to an atomic: safe in a handler. */
 static void on_interrupt(int signal_number) {
     (void)signal_number;
-    if (interruptions++ == 0) session_stop(interrupted_session);
-    else session_abandon(interrupted_session);
+    interruptions++;
+    session *s = atomic_load(&interrupted_session);
+    if (s && interruptions == 1) session_stop(s);
+    else if (s) session_abandon(s);
 }
 
-static void catch_interrupts(session *s) {
-    interrupted_session = s;
+/* Before the session starts: from its first line in the ledger on, a run that is asked to stop shall say so there. */
+static void catch_interrupts(void) {
     struct sigaction action = {.sa_handler = on_interrupt};
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
@@ -204,6 +207,13 @@ static void format_duration(double seconds, char text[32]) {
     if (seconds < 60) snprintf(text, 32, "%.0f s", seconds);
     else if (seconds < 3600) snprintf(text, 32, "%d:%02d min", (int)seconds / 60, (int)seconds % 60);
     else snprintf(text, 32, "%d:%02d h", (int)seconds / 3600, (int)seconds / 60 % 60);
+}
+
+/* What has come before there was a session counts too. */
+static void pass_interrupts_to(session *s) {
+    atomic_store(&interrupted_session, s);
+    if (interruptions > 0) session_stop(s);
+    if (interruptions > 1) session_abandon(s);
 }
 
 static void print_progress(const session_snapshot *p, FILE *out, bool terminal) {
@@ -258,6 +268,7 @@ int command_run(int count, char **arguments) {
     if (screen && !o.keep_given) o.session.keep_bytes = workbench_ring;
     o.session.start_paused = screen && o.paused; /* without a screen nobody could let it go on */
     if (o.tui && !screen) fprintf(stderr, "sunder: the live view is off: %s\n", why);
+    if (!screen) catch_interrupts();
     static script_reports reports;
     session *s = NULL;
     if (session_start(&o.session, &s, &reports) != STATUS_OK) return cli_fail_script(&reports);
@@ -268,7 +279,7 @@ int command_run(int count, char **arguments) {
         (void)tui_workbench(&s, &look, &r);
         if (!s) return 0;
     } else {
-        catch_interrupts(s);
+        pass_interrupts_to(s);
         watch_plainly(s, o.json ? stderr : stdout, o.quiet);
     }
     session_wait(s, -1);

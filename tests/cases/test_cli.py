@@ -3,7 +3,7 @@
 
 Usage: test_cli.py SUNDER [NAME...]   Each test works in a folder and with a ledger of its own.
 """
-import glob, json, os, re, signal, sqlite3, subprocess, time
+import glob, json, os, re, signal, subprocess, time
 
 import harness
 from harness import SOURCE, SUNDER, check, checkpoints_of, frames_of, run_tests
@@ -89,6 +89,17 @@ def test_interrupt_and_kill():
             check(code == 0 and again["frames"] == done + 3, f"{name} after {done} frames goes on: {err}")
             whole = box.run(PULL, *SMALL, "--frames", str(done + 3), "--out", box.path(name))[1]
             check(again["state_hash"] == whole["state_hash"], f"{name}: same bits as the run that was never stopped")
+
+
+def test_no_moment_to_stop_leaves_a_run_as_running():
+    with Box() as box:
+        for milliseconds in range(20, 200, 12):
+            process = box.start_run(PULL, "--set", "particles=20000", "--frames", "1000000", "--out", box.path(str(milliseconds)))
+            time.sleep(milliseconds / 1000)
+            process.send_signal(signal.SIGTERM)
+            process.communicate()
+            states = box.statuses() if os.path.exists(box.db) else []
+            check(set(states) <= {"interrupted"}, f"stopped after {milliseconds} ms: {states}")
 
 
 def test_a_dead_run_goes_on_to_the_frames_first_asked_for():

@@ -1,6 +1,5 @@
 """The workbench in a terminal of its own, over a ledger of its own: what the cases of every screen drive."""
 import os
-import re
 import shutil
 import sqlite3
 import sys

@@ -95,6 +95,7 @@ def no_colour_where_there_is_none():
                 check(not re.search(COLOUR, s.text(True)), f"{name}: colours with {variables or term}")
             s.do("screen run")
             s.keys("q")
+            s.wait(r"^END")  # by then its modes are in a file
             s.wait(r"^status 0")
             s.restored(first_line=False)
 

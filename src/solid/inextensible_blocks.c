@@ -167,6 +167,20 @@ SIMD_INLINE void collect_block(pass_context *c, int32_t index, int worker, kerne
     exchange_plane(s, b, cells, into, true);
 }
 
+/* The first of the window's nodes around one lane; along each axis their weights, and how far they lie along the fibre. */
+SIMD_INLINE const real *nodes_around(const fibre_lanes *l, int lane, kernel_kind kernel, const real *window, real w[3][4], real x[3][4]) {
+    const vec u[3] = {l->at.u.x, l->at.u.y, l->at.u.z}, a[3] = {l->a.x, l->a.y, l->a.z};
+    for (int axis = 0; axis < 3; axis++) {
+        vec weight[4];
+        kernel_weights(kernel, u[axis], weight);
+        for (int n = 0; n < (kernel == KERNEL_QUADRATIC ? 3 : 4); n++) {
+            w[axis][n] = weight[n][lane];
+            x[axis][n] = a[axis][lane] * ((real)n - u[axis][lane]);
+        }
+    }
+    return window + (int)window_index(l->at.base)[lane] * NODE;
+}
+
 /* What a tension of one at a lane's particle does: Σ_i (Δt/m_i) |P_i a|² (a · G_ip)², and Σ_i (a · G_ip)² with and without what holds leave of
  * it. */
 typedef struct lane_response {
@@ -175,20 +189,11 @@ typedef struct lane_response {
 
 /* The window's nodes are the normals of holds and Δt/m_i (hold_normals_slot). */
 SIMD_INLINE lane_response response(const fibre_lanes *l, int lane, kernel_kind kernel, real scale, const real *window) {
-    const vec u[3] = {l->at.u.x, l->at.u.y, l->at.u.z};
     const real a[3] = {l->a.x[lane], l->a.y[lane], l->a.z[lane]};
     int nodes = kernel == KERNEL_QUADRATIC ? 3 : 4;
     real w[3][4], x[3][4];
     lane_response sum = {0};
-    for (int axis = 0; axis < 3; axis++) {
-        vec weight[4];
-        kernel_weights(kernel, u[axis], weight);
-        for (int n = 0; n < nodes; n++) {
-            w[axis][n] = weight[n][lane];
-            x[axis][n] = a[axis] * ((real)n - u[axis][lane]);
-        }
-    }
-    const real *from = window + (int)window_index(l->at.base)[lane] * NODE;
+    const real *from = nodes_around(l, lane, kernel, window, w, x);
     for (int i = 0; i < nodes; i++)
         for (int j = 0; j < nodes; j++)
             for (int n = 0; n < nodes; n++) {
@@ -226,19 +231,9 @@ SIMD_INLINE void respond_block(pass_context *c, int32_t index, int worker, kerne
 
 /* D⁻¹ Σ_i w_ip (a · (x_i − x_p))² T_i of one lane; T is the fourth component of the node vectors (wave_slot). */
 SIMD_INLINE real wave_square(const fibre_lanes *l, int lane, kernel_kind kernel, const real *window) {
-    const vec u[3] = {l->at.u.x, l->at.u.y, l->at.u.z};
-    const real a[3] = {l->a.x[lane], l->a.y[lane], l->a.z[lane]};
     int nodes = kernel == KERNEL_QUADRATIC ? 3 : 4;
     real w[3][4], x[3][4], sum = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        vec weight[4];
-        kernel_weights(kernel, u[axis], weight);
-        for (int n = 0; n < nodes; n++) {
-            w[axis][n] = weight[n][lane];
-            x[axis][n] = a[axis] * ((real)n - u[axis][lane]);
-        }
-    }
-    const real *from = window + (int)window_index(l->at.base)[lane] * NODE;
+    const real *from = nodes_around(l, lane, kernel, window, w, x);
     for (int i = 0; i < nodes; i++)
         for (int j = 0; j < nodes; j++)
             for (int n = 0; n < nodes; n++) {

@@ -7,15 +7,20 @@
 #include <string.h>
 
 extern const sheet_engine sheet_engine_table_f32_plain, sheet_engine_table_f64_plain;
-#ifdef SUNDER_HAS_X86
+#ifdef SUNDER_HAS_AVX2
 extern const sheet_engine sheet_engine_table_f32_avx2, sheet_engine_table_f64_avx2;
+#endif
+#ifdef SUNDER_HAS_AVX512
 extern const sheet_engine sheet_engine_table_f32_avx512, sheet_engine_table_f64_avx512;
 #endif
 
 const sheet_engine *sheet_engine_find(int precision, const char *simd) {
     static const sheet_engine *const engines[] = {
-#ifdef SUNDER_HAS_X86
-        &sheet_engine_table_f32_avx512, &sheet_engine_table_f64_avx512, &sheet_engine_table_f32_avx2, &sheet_engine_table_f64_avx2,
+#ifdef SUNDER_HAS_AVX512
+        &sheet_engine_table_f32_avx512, &sheet_engine_table_f64_avx512,
+#endif
+#ifdef SUNDER_HAS_AVX2
+        &sheet_engine_table_f32_avx2, &sheet_engine_table_f64_avx2,
 #endif
         &sheet_engine_table_f32_plain, &sheet_engine_table_f64_plain,
     };

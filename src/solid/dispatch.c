@@ -10,16 +10,31 @@
     extern const solid_engine solid_engine_table_f32_##simd, solid_engine_table_f64_##simd;                            \
     extern const solid_engine solid_tetra_table_f32_##simd, solid_tetra_table_f64_##simd;
 DECLARE(plain)
-#ifdef SUNDER_HAS_X86
+#ifdef SUNDER_HAS_AVX2
 DECLARE(avx2)
+#endif
+#ifdef SUNDER_HAS_AVX512
 DECLARE(avx512)
-#define EACH(table) &table##_f32_avx512, &table##_f64_avx512, &table##_f32_avx2, &table##_f64_avx2, &table##_f32_plain, &table##_f64_plain
-#else
-#define EACH(table) &table##_f32_plain, &table##_f64_plain
 #endif
 
-static const solid_engine *const points[] = {EACH(solid_engine_table)};
-static const solid_engine *const meshes[] = {EACH(solid_tetra_table)};
+static const solid_engine *const points[] = {
+#ifdef SUNDER_HAS_AVX512
+    &solid_engine_table_f32_avx512, &solid_engine_table_f64_avx512,
+#endif
+#ifdef SUNDER_HAS_AVX2
+    &solid_engine_table_f32_avx2, &solid_engine_table_f64_avx2,
+#endif
+    &solid_engine_table_f32_plain, &solid_engine_table_f64_plain,
+};
+static const solid_engine *const meshes[] = {
+#ifdef SUNDER_HAS_AVX512
+    &solid_tetra_table_f32_avx512, &solid_tetra_table_f64_avx512,
+#endif
+#ifdef SUNDER_HAS_AVX2
+    &solid_tetra_table_f32_avx2, &solid_tetra_table_f64_avx2,
+#endif
+    &solid_tetra_table_f32_plain, &solid_tetra_table_f64_plain,
+};
 enum { VARIANTS = sizeof points / sizeof *points };
 
 static const solid_engine *find(const solid_engine *const *engines, int precision, const char *simd) {

@@ -44,6 +44,13 @@ typedef real_bits vec_mask __attribute__((vector_size(VEC_BYTES))); /* all ones 
 #define SIMD_INLINE static inline __attribute__((always_inline))
 #endif
 
+/* Before a short loop of constant length whose arrays are to become registers; compilers leave some of these loops as they are. */
+#ifdef __clang__
+#define SIMD_UNROLL _Pragma("unroll")
+#else
+#define SIMD_UNROLL _Pragma("GCC unroll 16")
+#endif
+
 SIMD_INLINE vec vec_load(const real *from) {
     vec v;
     memcpy(&v, from, sizeof v);
@@ -90,16 +97,34 @@ SIMD_INLINE vec vec_sqrt(vec a) {
 
 /* where(mask) ? a : b */
 SIMD_INLINE vec vec_select(vec_mask mask, vec a, vec b) {
+#if SUNDER_SIMD == 1 && SUNDER_PRECISION == 32
+    return _mm256_blendv_ps(b, a, (vec)mask);
+#elif SUNDER_SIMD == 1
+    return _mm256_blendv_pd(b, a, (vec)mask);
+#else
     return (vec)(((vec_mask)a & mask) | ((vec_mask)b & ~mask));
+#endif
 }
 
 /* Of a NaN and a number the result is b: callers put the number that must survive second. */
 SIMD_INLINE vec vec_max(vec a, vec b) {
+#if SUNDER_SIMD == 1 && SUNDER_PRECISION == 32
+    return _mm256_max_ps(a, b);
+#elif SUNDER_SIMD == 1
+    return _mm256_max_pd(a, b);
+#else
     return vec_select(a > b, a, b);
+#endif
 }
 
 SIMD_INLINE vec vec_min(vec a, vec b) {
+#if SUNDER_SIMD == 1 && SUNDER_PRECISION == 32
+    return _mm256_min_ps(a, b);
+#elif SUNDER_SIMD == 1
+    return _mm256_min_pd(a, b);
+#else
     return vec_select(a < b, a, b);
+#endif
 }
 
 SIMD_INLINE vec vec_abs(vec a) {
@@ -158,12 +183,25 @@ SIMD_INLINE vec vec_floor(vec a) {
 
 /* Transposes VEC_LANES vectors: lane j of row i becomes lane i of row j. */
 SIMD_INLINE void vec_transpose(vec rows[VEC_LANES]) {
-#if VEC_BYTES == 64 && SUNDER_PRECISION == 32
+#if SUNDER_SIMD == 1 && SUNDER_PRECISION == 32
+    /* By interleaving, for which there is one instruction each; TRANSPOSE_STAGE(1) would take two. */
+    vec pairs[8], fours[8];
+    for (int i = 0; i < 8; i += 2) pairs[i] = _mm256_unpacklo_ps(rows[i], rows[i + 1]), pairs[i + 1] = _mm256_unpackhi_ps(rows[i], rows[i + 1]);
+    for (int i = 0; i < 8; i += 4)
+        for (int j = 0; j < 2; j++) {
+            fours[i + 2 * j] = _mm256_shuffle_ps(pairs[i + j], pairs[i + j + 2], 0x44);
+            fours[i + 2 * j + 1] = _mm256_shuffle_ps(pairs[i + j], pairs[i + j + 2], 0xee);
+        }
+    for (int i = 0; i < 4; i++) {
+        rows[i] = _mm256_permute2f128_ps(fours[i], fours[i + 4], 0x20);
+        rows[i + 4] = _mm256_permute2f128_ps(fours[i], fours[i + 4], 0x31);
+    }
+#elif VEC_BYTES == 64 && SUNDER_PRECISION == 32
     TRANSPOSE_STAGE(1, LANES(0, 16, 2, 18, 4, 20, 6, 22, 8, 24, 10, 26, 12, 28, 14, 30), LANES(1, 17, 3, 19, 5, 21, 7, 23, 9, 25, 11, 27, 13, 29, 15, 31))
     TRANSPOSE_STAGE(2, LANES(0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29), LANES(2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31))
     TRANSPOSE_STAGE(4, LANES(0, 1, 2, 3, 16, 17, 18, 19, 8, 9, 10, 11, 24, 25, 26, 27), LANES(4, 5, 6, 7, 20, 21, 22, 23, 12, 13, 14, 15, 28, 29, 30, 31))
     TRANSPOSE_STAGE(8, LANES(0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23), LANES(8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31))
-#elif VEC_BYTES == 64 || (VEC_BYTES == 32 && SUNDER_PRECISION == 32)
+#elif VEC_BYTES == 64
     TRANSPOSE_STAGE(1, LANES(0, 8, 2, 10, 4, 12, 6, 14), LANES(1, 9, 3, 11, 5, 13, 7, 15))
     TRANSPOSE_STAGE(2, LANES(0, 1, 8, 9, 4, 5, 12, 13), LANES(2, 3, 10, 11, 6, 7, 14, 15))
     TRANSPOSE_STAGE(4, LANES(0, 1, 2, 3, 8, 9, 10, 11), LANES(4, 5, 6, 7, 12, 13, 14, 15))
@@ -243,7 +281,17 @@ SIMD_INLINE void vec4_sums(const vec4 *a, const vec4 *b, const vec4 *c, vec4 *ou
 
 /* ---- rows: four nodes of four reals, for the transfers ----------------------------------------------------------- */
 
-enum { ROW = 16, ROW_PARTS = ROW / VEC_LANES };
+enum {
+    ROW = 16,
+    ROW_PARTS = ROW / VEC_LANES,
+    /* The nine rows around a particle, and what is added to them, stay in registers; there are 32 of 64 bytes, else 16. */
+    ROWS_FIT_REGISTERS = VEC_BYTES == 64,
+};
+
+/* Whether a part of a row holds one of its first nodes. */
+SIMD_INLINE int row_needs(int part, int nodes) {
+    return part * VEC_LANES < 4 * nodes;
+}
 
 typedef struct node_row {
     vec part[ROW_PARTS];
@@ -323,7 +371,7 @@ SIMD_INLINE node_row row_spread(const real *four) {
     return r;
 }
 
-/* Adds the four groups of four of each of four rows, in the order (0 + 1) + (2 + 3): sixteen sums. */
+/* Adds the four groups of four of each of four rows: sixteen sums. */
 SIMD_INLINE void row_fold(const node_row rows[4], real *sums) {
 #if SUNDER_SIMD == 2 && SUNDER_PRECISION == 32
 #define FOLD(a, b) _mm512_add_ps(_mm512_shuffle_f32x4(a, b, 0x88), _mm512_shuffle_f32x4(a, b, 0xdd))
@@ -338,11 +386,9 @@ SIMD_INLINE void row_fold(const node_row rows[4], real *sums) {
         _mm256_storeu_pd(sums + 4 * i, _mm256_add_pd(sum01, sum23));
     }
 #elif SUNDER_SIMD == 1 && SUNDER_PRECISION == 32
-    for (int i = 0; i < 4; i++) {
-        __m256 low = rows[i].part[0], high = rows[i].part[1];
-        __m128 sum01 = _mm_add_ps(_mm256_castps256_ps128(low), _mm256_extractf128_ps(low, 1));
-        __m128 sum23 = _mm_add_ps(_mm256_castps256_ps128(high), _mm256_extractf128_ps(high, 1));
-        _mm_storeu_ps(sums + 4 * i, _mm_add_ps(sum01, sum23));
+    for (int i = 0; i < 4; i += 2) {
+        __m256 a = _mm256_add_ps(rows[i].part[0], rows[i].part[1]), b = _mm256_add_ps(rows[i + 1].part[0], rows[i + 1].part[1]);
+        _mm256_storeu_ps(sums + 4 * i, _mm256_add_ps(_mm256_insertf128_ps(a, _mm256_castps256_ps128(b), 1), _mm256_permute2f128_ps(a, b, 0x31)));
     }
 #elif SUNDER_SIMD == 1
     for (int i = 0; i < 4; i++) {

@@ -390,7 +390,7 @@ void implicit_load_window(const solid *s, const solid_block *b, real *window) {
 
 SIMD_INLINE void gather_spread(const tile_work *w, kernel_kind kind, bool weighed, const real *window) {
     int nodes = kind == KERNEL_QUADRATIC ? 3 : 4;
-    if (!weighed) kernel_records(w->state, w->tile, w->scratch->records, kind);
+    if (!weighed) kernel_records(w->state, w->tile, 0, w->tile->pack_count, w->scratch->records, kind);
     for (int p = 0; p < w->tile->count; p++) {
         const real *r = w->scratch->records + p * RECORD, *first = window + (int)r[G2P_NODE];
         w->scratch->laplacian[p] = mean_at(r, nodes, first) / mean_at(r, nodes, first + WINDOW_NODES);

@@ -89,20 +89,22 @@ SIMD_INLINE void spread_block(pass_context *c, int32_t index, int worker, kernel
         vec strength = l.volume * vec_abs(q);
         q *= l.volume * scale;
         const vec a[3] = {l.a.x, l.a.y, l.a.z};
-        const vec u[3] = {l.at.u.x, l.at.u.y, l.at.u.z};
+        kernel_place at = kernel_row(kernel, l.at);
+        const vec u[3] = {at.u.x, at.u.y, at.u.z};
         vec along = vec_fma(a[0], u[0], vec_fma(a[1], u[1], a[2] * u[2]));
         vec columns[RECORD] = {vec_all(0)};
-        static const int weight_slot[3] = {P2G_WX, P2G_WY, P2G_WZ};
+        kernel_weights(kernel, u[0], columns + P2G_WX);
+        kernel_weights(kernel, u[1], columns + P2G_WY);
+        kernel_row_weights(kernel, u[2], columns + P2G_WZ);
         for (int axis = 0; axis < 3; axis++) {
-            kernel_weights(kernel, u[axis], columns + weight_slot[axis]);
             columns[P2G_BASE + axis] = -(q * a[axis] * along);
             for (int column = 0; column < 3; column++) columns[P2G_X + 4 * column + axis] = q * a[axis] * a[column];
         }
         columns[P2G_BASE + 3] = strength;
-        columns[P2G_NODE] = window_index(l.at.base);
+        columns[P2G_NODE] = window_index(at.base);
         records_store(records, first, 0, columns, RECORD);
         if (k + 1 == t->pack_count && part + 1 == PACK_PARTS)
-            for (int p = 0; p < t->count;) p = scatter_run(records, p, t->count, nodes, node_offset, own->window);
+            scatter_particles(records, 0, t->count, t->count, nodes, node_offset, own->window);
     })
     exchange_vectors(s, b, own->window, true);
 }
@@ -113,29 +115,19 @@ typedef struct fibre_rate {
 } fibre_rate;
 
 /* Of the lanes of one part, from gathered records; `scale` is gradient_scale's. */
-SIMD_INLINE fibre_rate rate_of(const fibre_lanes *l, const real *records, int first, real scale) {
-    const vec a[3] = {l->a.x, l->a.y, l->a.z};
-    vec out[RECORD - G2P_OUT], turned[3];
+SIMD_INLINE fibre_rate rate_of(kernel_kind kernel, const fibre_lanes *l, const real *records, int first, real scale) {
+    vec out[RECORD - G2P_OUT];
     records_load(records, first, G2P_OUT, out, RECORD - G2P_OUT);
-    for (int c = 0; c < 3; c++) turned[c] = scale * vec_fma(out[4 + c], a[0], vec_fma(out[8 + c], a[1], out[12 + c] * a[2]));
-    vec along = vec_fma(turned[0], a[0], vec_fma(turned[1], a[1], turned[2] * a[2]));
-    vec square = vec_fma(turned[0], turned[0], vec_fma(turned[1], turned[1], turned[2] * turned[2]));
+    vec3v turn = vec3v_scale(vec_all(scale), mat3v_times(gathered_moments(kernel, out, l->at), l->a));
+    vec along = vec3v_dot(turn, l->a), square = vec3v_dot(turn, turn);
     return (fibre_rate){along, vec_max(square - along * along, vec_all(0))};
 }
 
-SIMD_INLINE void gather_records(real *records, int first, int lanes, const fibre_lanes *l, kernel_kind kernel, const node_row node_offset,
-                                const real *window) {
-    const vec u[3] = {l->at.u.x, l->at.u.y, l->at.u.z};
-    static const int weight_slot[3] = {G2P_WX, G2P_WY, G2P_WZ};
+SIMD_INLINE void gather_records(real *records, int first, int lanes, const fibre_lanes *l, kernel_kind kernel, const real *window) {
     vec columns[G2P_OUT];
-    for (int axis = 0; axis < 3; axis++) {
-        kernel_weights(kernel, u[axis], columns + weight_slot[axis]);
-        columns[G2P_OFFSET + axis] = u[axis];
-    }
-    columns[G2P_NODE] = window_index(l->at.base);
+    gather_columns(kernel, l->at, columns);
     records_store(records, first, 0, columns, G2P_OUT);
-    for (int lane = 0; lane < lanes; lane++)
-        gather_particle(records + (first + lane) * RECORD, kernel == KERNEL_QUADRATIC ? 3 : 4, node_offset, window);
+    gather_particles(records, first, first + lanes, kernel == KERNEL_QUADRATIC ? 3 : 4, window);
     for (int lane = lanes; lane < VEC_LANES; lane++) memset(records + (first + lane) * RECORD + G2P_OUT, 0, 16 * sizeof(real));
 }
 
@@ -147,15 +139,13 @@ SIMD_INLINE void collect_block(pass_context *c, int32_t index, int worker, kerne
     if (!block_is_inextensible(s, b)) return;
     solid_worker *own = &s->workers[worker];
     real *cells = own->implicit_window, scale = gradient_scale(s, kernel);
-    const real offsets[4] = {0, 1, 2, 3};
-    node_row node_offset = row_spread(offsets);
     exchange_vectors(s, b, own->window, false);
     memset(cells, 0, WINDOW_NODES * sizeof *cells);
     if (into == RESIDUAL) exchange_plane(s, b, cells + WINDOW_NODES, STRAIN, false);
     FOR_EACH_PART(s, b, {
         fibre_lanes l = lanes_load(s, kernel, pack, part);
-        gather_records(own->tile.records, first, LANES_OF(t, first), &l, kernel, node_offset, own->window);
-        fibre_rate rate = rate_of(&l, own->tile.records, first, scale);
+        gather_records(own->tile.records, first, LANES_OF(t, first), &l, kernel, own->window);
+        fibre_rate rate = rate_of(kernel, &l, own->tile.records, first, scale);
         vec value = l.volume * rate.along;
         if (into == RESIDUAL) {
             value += l.volume * vec_min((real)0.5 * c->dt * rate.across_square, vec_all(CORRECTED_MOST / c->dt));

@@ -61,6 +61,32 @@ SIMD_INLINE kernel_place kernel_locate(kernel_kind kernel, vec3v x) {
     return (kernel_place){base, {x.x - base.x, x.y - base.y, x.z - base.z}};
 }
 
+/* Rows of four nodes along z begin where a vector of theirs is aligned in the window: with quadratic kernels, which need three nodes, at an even one where a
+ * vector holds two. Stores that cross a vector's boundary take two turns, and a quarter of all accesses would cross a cache line. */
+SIMD_INLINE bool rows_are_even(kernel_kind kernel) {
+    return kernel == KERNEL_QUADRATIC && VEC_LANES == 2 * 4;
+}
+
+/* A place that kernel_locate found, along z from the first node of the row. */
+SIMD_INLINE kernel_place kernel_row(kernel_kind kernel, kernel_place at) {
+    if (!rows_are_even(kernel)) return at;
+    vec even = 2 * vec_floor((real)0.5 * at.base.z);
+    at.u.z += at.base.z - even, at.base.z = even;
+    return at;
+}
+
+/* Weights of a row's four nodes, u from kernel_row. */
+SIMD_INLINE void kernel_row_weights(kernel_kind kernel, vec u, vec w[4]) {
+    if (!rows_are_even(kernel)) {
+        kernel_weights(kernel, u, w);
+        return;
+    }
+    vec_mask odd = u >= (real)1.5;
+    const vec zero = vec_all(0);
+    quadratic_weights(vec_select(odd, u - 1, u), w);
+    w[3] = vec_select(odd, w[2], zero), w[2] = vec_select(odd, w[1], w[2]), w[1] = vec_select(odd, w[0], w[1]), w[0] = vec_select(odd, zero, w[0]);
+}
+
 /* Index of the first node within the window, as a real (exact: below 1000). */
 SIMD_INLINE vec window_index(vec3v base) {
     return (base.x - (real)WINDOW_LOW) * (real)STRIDE_X + (base.y - (real)WINDOW_LOW) * (real)STRIDE_Y + (base.z - (real)WINDOW_LOW);

@@ -11,7 +11,7 @@
 enum {
     RECORD = 32,
     P2G_BASE = 0, P2G_X = 4, P2G_Y = 8, P2G_Z = 12, P2G_WZ = 16, P2G_WX = 20, P2G_WY = 24, P2G_NODE = 28, P2G_DAMAGE = 29 /* and 1 */,
-    G2P_WX = 0, G2P_WY = 4, G2P_WZ = 8, G2P_OFFSET = 12, G2P_NODE = 15, G2P_OUT = 16,
+    G2P_WX = 0, G2P_WY = 4, G2P_WZ = 8, G2P_NODE = 12, G2P_SHIFT = 13 /* of the kernel's first node along z in its row */, G2P_OUT = 16,
 };
 
 /* Writes columns[0 … count) of a part's lanes into slots from `slot` on of their records; count is a multiple of VEC_LANES. The columns are
@@ -31,22 +31,56 @@ SIMD_INLINE void records_load(const real *records, int first, int slot, vec *col
     }
 }
 
-/* Weights and places of a tile's particles, as a gather wants them. */
-SIMD_INLINE void kernel_records(const solid *s, const solid_tile *tile, real *records, kernel_kind kernel) {
-    for (int k = 0; k < tile->pack_count; k++)
+SIMD_INLINE void gather_columns(kernel_kind kernel, kernel_place at, vec columns[G2P_OUT]) {
+    kernel_place row = kernel_row(kernel, at);
+    kernel_weights(kernel, row.u.x, columns + G2P_WX);
+    kernel_weights(kernel, row.u.y, columns + G2P_WY);
+    kernel_row_weights(kernel, row.u.z, columns + G2P_WZ);
+    columns[G2P_NODE] = window_index(row.base), columns[G2P_SHIFT] = at.base.z - row.base.z;
+    for (int c = G2P_SHIFT + 1; c < G2P_OUT; c++) columns[c] = vec_all(0);
+}
+
+/* Weights and places of the particles of a tile's packs from `first` to before `end`, as a gather wants them: along z of the row's four nodes. */
+SIMD_INLINE void kernel_records(const solid *s, const solid_tile *tile, int first, int end, real *records, kernel_kind kernel) {
+    for (int k = first; k < end; k++)
         for (int part = 0; part < PACK_PARTS; part++) {
-            kernel_place at = kernel_locate(kernel, vec3v_load(&s->fields[FIELD_POSITION], tile->first_pack + k, part));
             vec columns[G2P_OUT];
-            kernel_weights(kernel, at.u.x, columns + G2P_WX);
-            kernel_weights(kernel, at.u.y, columns + G2P_WY);
-            kernel_weights(kernel, at.u.z, columns + G2P_WZ);
-            columns[G2P_OFFSET] = at.u.x, columns[G2P_OFFSET + 1] = at.u.y, columns[G2P_OFFSET + 2] = at.u.z;
-            columns[G2P_NODE] = window_index(at.base);
-            records_store(records, k * PACK + part * VEC_LANES, 0, columns, G2P_OUT);
+            gather_columns(kernel, kernel_locate(kernel, vec3v_load(&s->fields[FIELD_POSITION], tile->first_pack + k, part)), columns);
+            records_store(records, (k - first) * PACK + part * VEC_LANES, 0, columns, G2P_OUT);
         }
 }
 
-/* Adds the contributions of particles that share a first node to the window: accumulated in registers, stored once. */
+/* What a particle's record adds to one part of the rows around it: the value at each axis' first node, and its slopes, all times the weight along z. */
+typedef struct row_terms {
+    vec value, along_x, along_y;
+} row_terms;
+
+SIMD_INLINE row_terms row_terms_of(const real *r, const node_row node_offset, int part) {
+    vec weight = row_spread(r + P2G_WZ).part[part];
+    vec value = vec_fma(row_repeat(r + P2G_Z).part[part], node_offset.part[part], row_repeat(r + P2G_BASE).part[part]);
+    return (row_terms){weight * value, weight * row_repeat(r + P2G_X).part[part], weight * row_repeat(r + P2G_Y).part[part]};
+}
+
+/* Adds the contribution of one particle to the window, from its first node on. */
+SIMD_INLINE void scatter_particle(const real *restrict r, int nodes, const node_row node_offset, real *restrict first) {
+    vec weight_y[4];
+    for (int j = 0; j < nodes; j++) weight_y[j] = vec_all(r[P2G_WY + j]);
+    SIMD_UNROLL for (int part = 0; part < ROW_PARTS; part++) {
+        if (!row_needs(part, nodes)) continue;
+        row_terms t = row_terms_of(r, node_offset, part);
+        for (int i = 0; i < nodes; i++) {
+            vec weight_x = vec_all(r[P2G_WX + i]), here = t.value * weight_x, slope = t.along_y * weight_x;
+            for (int j = 0; j < nodes; j++) {
+                real *to = first + (i * STRIDE_X + j * STRIDE_Y) * NODE + part * VEC_LANES;
+                vec_store(to, vec_fma(here, weight_y[j], vec_load(to)));
+                here += slope;
+            }
+            t.value += t.along_x;
+        }
+    }
+}
+
+/* Adds the contributions of particles that share a first node to the window, summed up in registers; returns the first that does not. */
 SIMD_INLINE int scatter_run(const real *records, int p, int count, int nodes, const node_row node_offset, real *window) {
     real node = records[p * RECORD + P2G_NODE];
     node_row sum[16];
@@ -68,6 +102,27 @@ SIMD_INLINE int scatter_run(const real *records, int p, int count, int nodes, co
     }
     for (int i = 0; i < nodes; i++)
         for (int j = 0; j < nodes; j++) row_store(first + (i * STRIDE_X + j * STRIDE_Y) * NODE, sum[i * nodes + j]);
+    return p;
+}
+
+/* A particle's first node in a window; looked up a particle ahead, so that what depends on it need not wait. */
+SIMD_INLINE int node_of(const real *records, int p, int count, int slot) {
+    return (int)records[(p < count ? p : count - 1) * RECORD + slot] * NODE;
+}
+
+/* Adds the contributions of particles from p on to the window, at least until `end`, at most `count`; returns the first that was not. Where registers are too few for
+ * the sums of a run, one particle at a time: sums that are spilled cost two stores a row, and the end of a run is hard to foresee. */
+SIMD_INLINE int scatter_particles(const real *records, int p, int end, int count, int nodes, const node_row node_offset, real *window) {
+    if (end > count) end = count;
+    if (ROWS_FIT_REGISTERS) {
+        while (p < end) p = scatter_run(records, p, count, nodes, node_offset, window);
+        return p;
+    }
+    for (int next = node_of(records, p, count, P2G_NODE); p < end; p++) {
+        real *first = window + next;
+        next = node_of(records, p + 1, count, P2G_NODE);
+        scatter_particle(records + p * RECORD, nodes, node_offset, first);
+    }
     return p;
 }
 
@@ -108,30 +163,66 @@ SIMD_INLINE real mean_at(const real *r, int nodes, const real *x) {
     return (total[0] + total[2]) + (total[1] + total[3]);
 }
 
-/* One particle: Σ w v_i and Σ w v_i (x_i − x_p)ᵀ by separable sums, y first, then x, then z. Results in the record: velocity, then the three
- * columns. */
-SIMD_INLINE void gather_particle(real *r, int nodes, const node_row node_offset, const real *window) {
-    const real *first = window + (int)r[G2P_NODE] * NODE;
-    node_row plain = {0}, along_x = {0}, along_y = {0};
-    for (int i = 0; i < nodes; i++) {
-        node_row sum = {0}, moment = {0};
-        for (int j = 0; j < nodes; j++) {
-            node_row v = row_load(first + (i * STRIDE_X + j * STRIDE_Y) * NODE);
-            real weight = r[G2P_WY + j];
-            sum = row_scale_add(v, weight, sum);
-            moment = row_scale_add(v, weight * ((real)j - r[G2P_OFFSET + 1]), moment);
-        }
-        real weight = r[G2P_WX + i];
-        plain = row_scale_add(sum, weight, plain);
-        along_x = row_scale_add(sum, weight * ((real)i - r[G2P_OFFSET + 0]), along_x);
-        along_y = row_scale_add(moment, weight, along_y);
+/* Σ w_n v_n and Σ w_n v_n (n − 1) of the nodes of one axis: of quadratic kernels, three multiplications and two sums. */
+typedef struct axis_sums {
+    vec plain, lean;
+} axis_sums;
+
+SIMD_INLINE axis_sums axis_sum(int nodes, const vec v[4], const vec w[4]) {
+    vec first = v[0] * w[0], third = v[2] * w[2];
+    axis_sums s = {vec_fma(v[1], w[1], first) + third, third - first};
+    if (nodes == 4) {
+        vec fourth = v[3] * w[3];
+        s.plain += fourth, s.lean = vec_fma(vec_all(2), fourth, s.lean);
     }
-    node_row weight_z = row_spread(r + G2P_WZ);
-    const real z[4] = {r[G2P_OFFSET + 2], r[G2P_OFFSET + 2], r[G2P_OFFSET + 2], r[G2P_OFFSET + 2]};
-    node_row distance_z = row_scale_add(row_repeat(z), -1, node_offset);
-    node_row weighted = row_multiply(plain, weight_z);
-    const node_row moments[4] = {weighted, row_multiply(along_x, weight_z), row_multiply(along_y, weight_z), row_multiply(weighted, distance_z)};
+    return s;
+}
+
+/* One particle, from its first node on: Σ w v_i and Σ w v_i (x_i − x_m)ᵀ, by separable sums, y first, then x, then z. Results in the record: velocity, then the three
+ * columns. x_m is the second node along x and y, the row's middle along z: distances are small whole or half numbers, the same for all particles;
+ * gathered_moments goes over to the particle. */
+SIMD_INLINE void gather_particle(real *restrict r, int nodes, const real *restrict first) {
+    const real lean_z[4] = {(real)-1.5, (real)-0.5, (real)0.5, (real)1.5};
+    node_row weight_z = row_spread(r + G2P_WZ), weight_lean = row_multiply(weight_z, row_spread(lean_z)), moments[4];
+    vec weight_x[4], weight_y[4];
+    for (int n = 0; n < nodes; n++) weight_x[n] = vec_all(r[G2P_WX + n]), weight_y[n] = vec_all(r[G2P_WY + n]);
+    SIMD_UNROLL for (int part = 0; part < ROW_PARTS; part++) {
+        if (!row_needs(part, nodes)) {
+            for (int m = 0; m < 4; m++) moments[m].part[part] = vec_all(0);
+            continue;
+        }
+        vec plain[4], lean[4];
+        for (int i = 0; i < nodes; i++) {
+            vec v[4];
+            for (int j = 0; j < nodes; j++) v[j] = vec_load(first + (i * STRIDE_X + j * STRIDE_Y) * NODE + part * VEC_LANES);
+            axis_sums along = axis_sum(nodes, v, weight_y);
+            plain[i] = along.plain, lean[i] = along.lean;
+        }
+        axis_sums along = axis_sum(nodes, plain, weight_x);
+        vec along_y = axis_sum(nodes, lean, weight_x).plain;
+        moments[0].part[part] = along.plain * weight_z.part[part];
+        moments[1].part[part] = along.lean * weight_z.part[part];
+        moments[2].part[part] = along_y * weight_z.part[part];
+        moments[3].part[part] = along.plain * weight_lean.part[part];
+    }
     row_fold(moments, r + G2P_OUT);
+}
+
+SIMD_INLINE void gather_particles(real *records, int p, int end, int nodes, const real *window) {
+    for (int next = node_of(records, p, end, G2P_NODE); p < end; p++) {
+        const real *first = window + next;
+        next = node_of(records, p + 1, end, G2P_NODE);
+        gather_particle(records + p * RECORD, nodes, first);
+    }
+}
+
+/* From gathered columns, as records_load gives them from G2P_OUT on: Σ w v (x_i − x_p)ᵀ in units of dx, of particles at such places. */
+SIMD_INLINE mat3v gathered_moments(kernel_kind kernel, const vec out[16], kernel_place at) {
+    vec3v u = kernel_row(kernel, at).u;
+    vec x = 1 - u.x, y = 1 - u.y, z = (real)1.5 - u.z;
+    return (mat3v){vec_fma(x, out[0], out[4]), vec_fma(y, out[0], out[8]), vec_fma(z, out[0], out[12]),
+                   vec_fma(x, out[1], out[5]), vec_fma(y, out[1], out[9]), vec_fma(z, out[1], out[13]),
+                   vec_fma(x, out[2], out[6]), vec_fma(y, out[2], out[10]), vec_fma(z, out[2], out[14])};
 }
 
 #endif

@@ -82,7 +82,7 @@ typedef struct pass_clock {
 
 typedef struct solid_worker {
     tile_scratch tile;
-    real window[WINDOW_NODES * NODE];
+    _Alignas(64) real window[WINDOW_NODES * NODE];
     real old_window[WINDOW_NODES * NODE]; // FLIP only
     real damage_window[WINDOW_NODES * DAMAGE_NODE];
     pass_clock clocks[PASSES];

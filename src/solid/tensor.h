@@ -64,6 +64,10 @@ SIMD_INLINE vec3v vec3v_scale(vec s, vec3v a) {
     return (vec3v){s * a.x, s * a.y, s * a.z};
 }
 
+SIMD_INLINE mat3v mat3v_scale(vec s, mat3v m) {
+    return (mat3v){s * m.xx, s * m.xy, s * m.xz, s * m.yx, s * m.yy, s * m.yz, s * m.zx, s * m.zy, s * m.zz};
+}
+
 SIMD_INLINE vec3v mat3v_times(mat3v m, vec3v v) {
     return (vec3v){vec_fma(m.xx, v.x, vec_fma(m.xy, v.y, m.xz * v.z)), vec_fma(m.yx, v.x, vec_fma(m.yy, v.y, m.yz * v.z)),
                    vec_fma(m.zx, v.x, vec_fma(m.zy, v.y, m.zz * v.z))};

@@ -54,17 +54,31 @@ SIMD_INLINE void read_ahead(const pack_stream *stream, int32_t pack) {
     }
 }
 
+/* Packs of a tile whose records are made and used before the next ones': few, so that they stay in the first cache beside the window; all, where runs of particles are
+ * scattered together, which the end of a chunk would cut. */
+enum { CHUNK_PACKS = ROWS_FIT_REGISTERS ? TILE_PACKS : 1 };
+
+typedef struct pack_chunk {
+    int first, end;   /* packs of the tile */
+    int from, until;  /* its particles */
+} pack_chunk;
+
+SIMD_INLINE pack_chunk chunk_at(const solid_tile *tile, int first, int packs) {
+    int end = first + packs < tile->pack_count ? first + packs : tile->pack_count, until = end * PACK;
+    return (pack_chunk){first, end, first * PACK, until < tile->count ? until : tile->count};
+}
+
 /* Momentum records: base value at the kernel's first node and its slope along each axis; `forces` 0 leaves the stress out. With `damage` also
  * what scatter_damage takes. */
-SIMD_INLINE void momentum_records(const tile_work *w, kernel_kind kernel, real density, real forces, bool damage) {
+SIMD_INLINE void momentum_records(const tile_work *w, pack_chunk chunk, kernel_kind kernel, real density, real forces, bool damage) {
     const solid *s = w->state;
     const solid_definition *d = &s->definition;
     real dx = (real)d->dx, inverse_d = (real)((kernel == KERNEL_QUADRATIC ? 4.0 : 3.0) / (d->dx * d->dx));
     real force_scale = -forces * w->dt * inverse_d * dx;
-    for (int k = 0; k < w->tile->pack_count; k++)
+    for (int k = chunk.first; k < chunk.end; k++)
         for (int part = 0; part < PACK_PARTS; part++) {
             int32_t pack = w->tile->first_pack + k;
-            int first = k * PACK + part * VEC_LANES;
+            int first = (k - chunk.first) * PACK + part * VEC_LANES;
             vec volume = vec_load(field_at(&s->fields[FIELD_VOLUME], pack, 0, part));
             vec mass = scaled(s, s->density_scale, pack, part, volume * density), force = volume * force_scale, carry = mass * dx;
             mat3v C = mat3v_load(&s->fields[FIELD_AFFINE], pack, part);
@@ -75,26 +89,32 @@ SIMD_INLINE void momentum_records(const tile_work *w, kernel_kind kernel, real d
                        vec_fma(carry, C.yx, t[3]), vec_fma(carry, C.yy, t[1]), vec_fma(carry, C.yz, t[4]),
                        vec_fma(carry, C.zx, t[5]), vec_fma(carry, C.zy, t[4]), vec_fma(carry, C.zz, t[2])};
             vec3v v = vec3v_load(&s->fields[FIELD_VELOCITY], pack, part);
-            kernel_place at = kernel_locate(kernel, vec3v_load(&s->fields[FIELD_POSITION], pack, part));
+            kernel_place at = kernel_row(kernel, kernel_locate(kernel, vec3v_load(&s->fields[FIELD_POSITION], pack, part)));
             vec3v slope = mat3v_times(Q, at.u);
             const vec zero = vec_all(0);
-            vec columns[RECORD] = {vec_fma(mass, v.x, -slope.x), vec_fma(mass, v.y, -slope.y), vec_fma(mass, v.z, -slope.z), mass,
-                                   Q.xx, Q.yx, Q.zx, zero, Q.xy, Q.yy, Q.zy, zero, Q.xz, Q.yz, Q.zz, zero};
+            vec columns[RECORD]; /* without an initialiser: the compiler would clear what it leaves out by an instruction of forty cycles */
+            columns[P2G_BASE] = vec_fma(mass, v.x, -slope.x), columns[P2G_BASE + 1] = vec_fma(mass, v.y, -slope.y);
+            columns[P2G_BASE + 2] = vec_fma(mass, v.z, -slope.z), columns[P2G_BASE + 3] = mass;
+            columns[P2G_X] = Q.xx, columns[P2G_X + 1] = Q.yx, columns[P2G_X + 2] = Q.zx, columns[P2G_X + 3] = zero;
+            columns[P2G_Y] = Q.xy, columns[P2G_Y + 1] = Q.yy, columns[P2G_Y + 2] = Q.zy, columns[P2G_Y + 3] = zero;
+            columns[P2G_Z] = Q.xz, columns[P2G_Z + 1] = Q.yz, columns[P2G_Z + 2] = Q.zz, columns[P2G_Z + 3] = zero;
             kernel_weights(kernel, at.u.x, columns + P2G_WX);
             kernel_weights(kernel, at.u.y, columns + P2G_WY);
-            kernel_weights(kernel, at.u.z, columns + P2G_WZ);
+            kernel_row_weights(kernel, at.u.z, columns + P2G_WZ);
             columns[P2G_NODE] = window_index(at.base);
-            if (damage) columns[P2G_DAMAGE] = vec_load(field_at(&s->fields[s->damage_field], pack, 0, part)), columns[P2G_DAMAGE + 1] = vec_all(1);
+            columns[P2G_DAMAGE] = damage ? vec_load(field_at(&s->fields[s->damage_field], pack, 0, part)) : zero;
+            columns[P2G_DAMAGE + 1] = vec_all(1), columns[P2G_DAMAGE + 2] = zero;
             records_store(w->scratch->records, first, 0, columns, RECORD);
         }
 }
 
-SIMD_INLINE void scatter_momentum(const tile_work *w, const pack_stream *stream, int nodes, real *window) {
+SIMD_INLINE void scatter_momentum(const tile_work *w, const pack_stream *stream, pack_chunk chunk, int nodes, real *window) {
     const real offsets[4] = {0, 1, 2, 3};
     node_row node_offset = row_spread(offsets);
-    for (int k = 0, p = 0; k < w->tile->pack_count; k++) {
+    int count = chunk.until - chunk.from;
+    for (int k = chunk.first, p = 0; k < chunk.end; k++) {
         read_ahead(stream, w->tile->first_pack + k);
-        while (p < w->tile->count && p < (k + 1) * PACK) p = scatter_run(w->scratch->records, p, w->tile->count, nodes, node_offset, window);
+        p = scatter_particles(w->scratch->records, p, (k + 1 - chunk.first) * PACK, count, nodes, node_offset, window);
     }
 }
 
@@ -231,13 +251,17 @@ SIMD_INLINE void block_to_grid(const transfer_context *t, int32_t block_index, i
         fill(w.scratch->kirchhoff, w.tile->pack_count * 6 * PACK, 0);
         CALL_STAGE(&w, stress);
         real density = (real)s->definition.materials[w.tile->material].density;
-        if (s->old_grid) {
-            momentum_records(&w, kernel, density, 0, false);
-            scatter_momentum(&w, &stream, nodes, own->old_window);
-        }
         bool takes_part = channel && s->material_damaged[w.tile->material];
-        momentum_records(&w, kernel, density, 1, takes_part && kernel == laplacian);
-        scatter_momentum(&w, &stream, nodes, own->window);
+        int packs = takes_part ? TILE_PACKS : CHUNK_PACKS;
+        for (int first = 0; first < w.tile->pack_count; first += packs) {
+            pack_chunk chunk = chunk_at(w.tile, first, packs);
+            if (s->old_grid) {
+                momentum_records(&w, chunk, kernel, density, 0, false);
+                scatter_momentum(&w, &stream, chunk, nodes, own->old_window);
+            }
+            momentum_records(&w, chunk, kernel, density, 1, takes_part && kernel == laplacian);
+            scatter_momentum(&w, &stream, chunk, nodes, own->window);
+        }
         if (takes_part) scatter_damage(&w, laplacian, kernel, own->damage_window);
     }
     exchange_window(b, own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, true);
@@ -248,22 +272,22 @@ SIMD_INLINE void block_to_grid(const transfer_context *t, int32_t block_index, i
 
 /* ---- grid to particles ------------------------------------------------------------------------------------------- */
 
-SIMD_INLINE void gather_tile(const tile_work *w, const pack_stream *stream, kernel_kind kernel, const node_row node_offset, const real *window) {
-    for (int k = 0; k < w->tile->pack_count; k++) {
-        int end = (k + 1) * PACK < w->tile->count ? (k + 1) * PACK : w->tile->count;
+SIMD_INLINE void gather_chunk(const tile_work *w, const pack_stream *stream, pack_chunk chunk, kernel_kind kernel, const real *window) {
+    real *records = w->scratch->records;
+    int count = chunk.until - chunk.from;
+    for (int k = chunk.first; k < chunk.end; k++) {
+        int p = (k - chunk.first) * PACK, end = p + PACK < count ? p + PACK : count;
         read_ahead(stream, w->tile->first_pack + k);
-        for (int p = k * PACK; p < end; p++)
-            gather_particle(w->scratch->records + p * RECORD, kernel == KERNEL_QUADRATIC ? 3 : 4, node_offset, window);
+        gather_particles(records, p, end, kernel == KERNEL_QUADRATIC ? 3 : 4, window);
     }
-    for (int p = w->tile->count; p < w->tile->pack_count * PACK; p++)
-        memset(w->scratch->records + p * RECORD + G2P_OUT, 0, 16 * sizeof(real));
+    for (int p = count; p < (chunk.end - chunk.first) * PACK; p++) memset(records + p * RECORD + G2P_OUT, 0, 16 * sizeof(real));
 }
 
-SIMD_INLINE void keep_old_velocity(const tile_work *w) {
-    for (int k = 0; k < w->tile->pack_count; k++)
+SIMD_INLINE void keep_old_velocity(const tile_work *w, pack_chunk chunk) {
+    for (int k = chunk.first; k < chunk.end; k++)
         for (int part = 0; part < PACK_PARTS; part++) {
             vec out[RECORD - G2P_OUT];
-            records_load(w->scratch->records, k * PACK + part * VEC_LANES, G2P_OUT, out, RECORD - G2P_OUT);
+            records_load(w->scratch->records, (k - chunk.first) * PACK + part * VEC_LANES, G2P_OUT, out, RECORD - G2P_OUT);
             for (int c = 0; c < 3; c++) vec_store(scratch_at(w->scratch->old_velocity, 3, k, c, part), out[c]);
         }
 }
@@ -299,12 +323,12 @@ SIMD_INLINE void curve_records(const tile_work *w, kernel_kind kernel) {
 /* Δd at each particle from the nodal damage: N'' of one axis times N of the others, by separable sums, y first. A quadratic kernel's N'' are
  * the same everywhere: where momentum has it too, `weighed`, the gather's own records hold all that is needed. */
 SIMD_INLINE void gather_laplacian(const tile_work *w, kernel_kind kernel, bool weighed, const real *window) {
-    static const real even[12] = {1, -2, 1, 0, 1, -2, 1, 0, 1, -2, 1, 0};
+    static const real everywhere[8] = {1, -2, 1, 0, 1, -2, 1, 0}, along_z[2][4] = {{1, -2, 1, 0}, {0, 1, -2, 1}}; /* by the shift within the row */
     real scale = (real)(1 / (w->state->definition.dx * w->state->definition.dx));
     int nodes = kernel == KERNEL_QUADRATIC ? 3 : 4;
     if (!weighed) curve_records(w, kernel);
     for (int p = 0; p < w->tile->count; p++) {
-        const real *r = w->scratch->records + p * RECORD, *first = window + (int)r[G2P_NODE], *curve = weighed ? even : r + CURVE;
+        const real *r = w->scratch->records + p * RECORD, *first = window + (int)r[G2P_NODE], *curve = weighed ? everywhere : r + CURVE;
         vec4 plain = {0}, curved = {0}, bend, weight; /* plain, curved: what multiplies N'' and N along z */
         for (int i = 0; i < nodes; i++) {
             vec4 sum = {0}, bent = {0};
@@ -318,7 +342,7 @@ SIMD_INLINE void gather_laplacian(const tile_work *w, kernel_kind kernel, bool w
             vec4_add_scaled(&curved, &sum, curve[i]);
             vec4_add_scaled(&curved, &bent, r[G2P_WX + i]);
         }
-        vec4_load(&bend, curve + 8);
+        vec4_load(&bend, weighed ? along_z[(int)r[G2P_SHIFT]] : curve + 8);
         vec4_load(&weight, r + G2P_WZ);
         vec4 total = plain * bend + curved * weight;
         w->scratch->laplacian[p] = ((total[0] + total[1]) + (total[2] + total[3])) * scale;
@@ -357,29 +381,28 @@ SIMD_INLINE vec_mask is_sound(vec3v step, mat3v F) {
 }
 
 /* Moves the particles on; reports the first unsound one and whether any has left its block's margin. */
-SIMD_INLINE void advance_particles(const tile_work *w, kernel_kind kernel) {
+SIMD_INLINE void advance_particles(const tile_work *w, pack_chunk chunk, kernel_kind kernel) {
     const solid *s = w->state;
     const solid_definition *d = &s->definition;
     const solid_block *b = &s->blocks[w->tile->block];
     real inverse_d = (real)((kernel == KERNEL_QUADRATIC ? 4.0 : 3.0) / d->dx), per_cell = (real)((double)w->dt / d->dx);
     real shift = (real)kernel_shift(kernel);
     vec_mask inside = vec_all(0) == 0;
-    for (int k = 0; k < w->tile->pack_count; k++)
+    for (int k = chunk.first; k < chunk.end; k++)
         for (int part = 0; part < PACK_PARTS; part++) {
             int32_t pack = w->tile->first_pack + k;
             int first = k * PACK + part * VEC_LANES;
             const real *records = w->scratch->records;
-            vec out[RECORD - G2P_OUT]; /* velocity, then the columns of Σ w v (x_i − x_p)ᵀ, each with one to spare */
-            records_load(records, first, G2P_OUT, out, RECORD - G2P_OUT);
+            vec out[RECORD - G2P_OUT];
+            records_load(records, first - chunk.from, G2P_OUT, out, RECORD - G2P_OUT);
             vec3v v = {out[0], out[1], out[2]};
-            vec h = vec_all(inverse_d);
-            mat3v L = {h * out[4], h * out[8], h * out[12], h * out[5], h * out[9], h * out[13], h * out[6], h * out[10], h * out[14]};
+            vec3v x = vec3v_load(&s->fields[FIELD_POSITION], pack, part);
+            mat3v L = mat3v_scale(vec_all(inverse_d), gathered_moments(kernel, out, kernel_locate(kernel, x)));
             mat3v F = advance_deformation(L, w->dt, mat3v_load(&s->fields[FIELD_DEFORMATION], pack, part));
             vec3v step = {per_cell * v.x, per_cell * v.y, per_cell * v.z};
-            vec3v x = vec3v_load(&s->fields[FIELD_POSITION], pack, part);
             x = (vec3v){x.x + step.x, x.y + step.y, x.z + step.z};
             vec_mask sound = is_sound(step, F);
-            for (int lane = 0; lane < VEC_LANES; lane++)
+            for (int lane = 0; vec_any(~sound) && lane < VEC_LANES; lane++)
                 if (!sound[lane] && !w->result->fault && first + lane < w->tile->count) w->result->fault = first + lane + 1;
             inside &= (x.x >= (real)b->base_low[0] + shift) & (x.x < (real)(b->base_high[0] + 1) + shift) &
                       (x.y >= (real)b->base_low[1] + shift) & (x.y < (real)(b->base_high[1] + 1) + shift) &
@@ -389,7 +412,7 @@ SIMD_INLINE void advance_particles(const tile_work *w, kernel_kind kernel) {
             vec3v_store(&s->fields[FIELD_VELOCITY], pack, part, s->old_grid ? flip_velocity(w, k, part, v) : v);
             vec3v_store(&s->fields[FIELD_POSITION], pack, part, x);
         }
-    w->result->unsorted = vec_any(~inside);
+    w->result->unsorted |= vec_any(~inside);
 }
 
 /* The momentum limit: speed of sound of the state that has just been reached, and speed. */
@@ -420,8 +443,6 @@ SIMD_INLINE void block_to_particles(const transfer_context *t, int32_t block_ind
     const solid_block *b = &s->blocks[block_index];
     solid_worker *own = &s->workers[worker];
     bool wide = kernels_are_wide(kernel, laplacian, damage);
-    const real offsets[4] = {0, 1, 2, 3};
-    node_row node_offset = row_spread(offsets);
     bool follows = block_index + 1 < s->block_shares[worker + 1] && block_index >= s->block_shares[worker];
     pack_stream stream = stream_packs(s, block_index, follows ? block_index + 1 : -1);
     exchange_window(b, own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, false);
@@ -434,19 +455,23 @@ SIMD_INLINE void block_to_particles(const transfer_context *t, int32_t block_ind
         tile_work w = {.state = s, .tile = &s->tiles[i], .scratch = &own->tile, .result = &s->tile_results[i], .dt = t->dt};
         memset(w.result, 0, sizeof *w.result);
         bool weighed = damage && kernel == KERNEL_QUADRATIC && laplacian == KERNEL_QUADRATIC;
-        if (weighed) kernel_records(s, w.tile, w.scratch->records, kernel);
+        if (weighed) kernel_records(s, w.tile, 0, w.tile->pack_count, w.scratch->records, kernel);
         if (channel && s->material_damaged[w.tile->material] && !s->material_implicit[w.tile->material])
             gather_laplacian(&w, laplacian, weighed, own->damage_window);
         else if (damage)
             fill(w.scratch->laplacian, w.tile->pack_count * PACK, 0);
         if (damage && s->material_implicit[w.tile->material]) implicit_gather(&w, weighed, own->implicit_window);
-        if (!weighed) kernel_records(s, w.tile, w.scratch->records, kernel);
-        if (s->old_grid) {
-            gather_tile(&w, &stream, kernel, node_offset, own->old_window);
-            keep_old_velocity(&w);
+        int packs = weighed ? TILE_PACKS : CHUNK_PACKS;
+        for (int first = 0; first < w.tile->pack_count; first += packs) {
+            pack_chunk chunk = chunk_at(w.tile, first, packs);
+            if (!weighed) kernel_records(s, w.tile, chunk.first, chunk.end, w.scratch->records, kernel);
+            if (s->old_grid) {
+                gather_chunk(&w, &stream, chunk, kernel, own->old_window);
+                keep_old_velocity(&w, chunk);
+            }
+            gather_chunk(&w, &stream, chunk, kernel, own->window);
+            advance_particles(&w, chunk, kernel);
         }
-        gather_tile(&w, &stream, kernel, node_offset, own->window);
-        advance_particles(&w, kernel);
         CALL_STAGE(&w, update);
         limit_momentum(&w);
     }

@@ -223,7 +223,7 @@ static void return_block(void *context, int64_t index, int worker) {
         tile_work w = {.state = s, .tile = &s->tiles[t], .scratch = &own->tile};
         if (!takes_part(s, w.tile)) continue;
         if (c->to > c->from) {
-            kernel_records(s, w.tile, own->tile.records, s->definition.laplacian);
+            kernel_records(s, w.tile, 0, w.tile->pack_count, own->tile.records, s->definition.laplacian);
             gather_plane(&w, b, window, LEVEL, levels);
             gather_plane(&w, b, window, OPEN, own->tile.laplacian);
             exchange_tile(&w, levels, c->to - c->from);

@@ -106,7 +106,7 @@ SIMD_INLINE vec vec_select(vec_mask mask, vec a, vec b) {
 #endif
 }
 
-/* Of a NaN and a number the result is b: callers put the number that must survive second. */
+/* a > b ? a : b, as the instruction has it. Of a NaN and a number the result is b: callers put the number that must survive second. */
 SIMD_INLINE vec vec_max(vec a, vec b) {
 #if SUNDER_SIMD == 1 && SUNDER_PRECISION == 32
     return _mm256_max_ps(a, b);

@@ -145,6 +145,23 @@ SIMD_INLINE int vec_any(vec_mask mask) {
 #endif
 }
 
+/* A bit for each lane that is true. */
+SIMD_INLINE unsigned vec_bits(vec_mask mask) {
+#if SUNDER_SIMD == 2 && SUNDER_PRECISION == 32
+    return (unsigned)_mm512_movepi32_mask((__m512i)mask);
+#elif SUNDER_SIMD == 2
+    return (unsigned)_mm512_movepi64_mask((__m512i)mask);
+#elif SUNDER_SIMD == 1 && SUNDER_PRECISION == 32
+    return (unsigned)_mm256_movemask_ps((__m256)mask);
+#elif SUNDER_SIMD == 1
+    return (unsigned)_mm256_movemask_pd((__m256d)mask);
+#else
+    unsigned bits = 0;
+    for (int i = 0; i < VEC_LANES; i++) bits |= (unsigned)(mask[i] != 0) << i;
+    return bits;
+#endif
+}
+
 /* The largest lane; NaN lanes do not win. */
 SIMD_INLINE real vec_largest(vec a) {
     real largest = a[0];
@@ -413,65 +430,106 @@ SIMD_INLINE vec vec_gather(const real *base, const int32_t *index, int stride) {
     return vec_load(lanes);
 }
 
-/* Four reals from base + index[i] · stride of each lane, turned: out[c] holds component c. A load of 16 or 32 bytes a lane costs less
- * than four gathers. */
-SIMD_INLINE void vec_gather4(const real *base, const int32_t *index, int stride, vec out[4]) {
-#define GATHER_ROW(i) (base + (int64_t)index[i] * stride)
+/* ---- quads: four reals of each lane -------------------------------------------------------------------------------
+ *
+ * In four vectors, as loads of 16 or 32 bytes bring them: lane after lane, in an order that these functions alone know. What is done to two quads element by
+ * element needs no turning first. quad_turn makes four vectors of them, one for each component; a load a lane and the turn cost less than four gathers. */
+
+/* From base + index[i] · stride. */
+SIMD_INLINE void quad_gather(const real *base, const int32_t *index, int stride, vec quad[4]) {
+#define QUAD_LANE(i) (base + (int64_t)index[i] * stride)
 #if SUNDER_SIMD == 2 && SUNDER_PRECISION == 32
-    __m512 row[4];
-    for (int k = 0; k < 4; k++) { /* rows k, k + 4, k + 8, k + 12 */
-        __m512 r = _mm512_castps128_ps512(_mm_loadu_ps(GATHER_ROW(k)));
-        r = _mm512_insertf32x4(r, _mm_loadu_ps(GATHER_ROW(k + 4)), 1);
-        r = _mm512_insertf32x4(r, _mm_loadu_ps(GATHER_ROW(k + 8)), 2);
-        row[k] = _mm512_insertf32x4(r, _mm_loadu_ps(GATHER_ROW(k + 12)), 3);
+    for (int k = 0; k < 4; k++) { /* lanes k, k + 4, k + 8, k + 12 */
+        __m512 r = _mm512_castps128_ps512(_mm_loadu_ps(QUAD_LANE(k)));
+        r = _mm512_insertf32x4(r, _mm_loadu_ps(QUAD_LANE(k + 4)), 1);
+        r = _mm512_insertf32x4(r, _mm_loadu_ps(QUAD_LANE(k + 8)), 2);
+        quad[k] = _mm512_insertf32x4(r, _mm_loadu_ps(QUAD_LANE(k + 12)), 3);
     }
-    __m512 low01 = _mm512_unpacklo_ps(row[0], row[1]), low23 = _mm512_unpacklo_ps(row[2], row[3]);
-    __m512 high01 = _mm512_unpackhi_ps(row[0], row[1]), high23 = _mm512_unpackhi_ps(row[2], row[3]);
-    out[0] = _mm512_shuffle_ps(low01, low23, 0x44);
-    out[1] = _mm512_shuffle_ps(low01, low23, 0xee);
-    out[2] = _mm512_shuffle_ps(high01, high23, 0x44);
-    out[3] = _mm512_shuffle_ps(high01, high23, 0xee);
+#elif SUNDER_SIMD == 2
+    for (int k = 0; k < 4; k++) { /* lanes 0, 2; 1, 3; 4, 6; 5, 7 */
+        int lane = 4 * (k / 2) + k % 2;
+        quad[k] = _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(QUAD_LANE(lane))), _mm256_loadu_pd(QUAD_LANE(lane + 2)), 1);
+    }
 #elif SUNDER_SIMD == 1 && SUNDER_PRECISION == 32
-    __m256 row[4];
-    for (int k = 0; k < 4; k++)
-        row[k] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(GATHER_ROW(k))), _mm_loadu_ps(GATHER_ROW(k + 4)), 1);
-    __m256 low01 = _mm256_unpacklo_ps(row[0], row[1]), low23 = _mm256_unpacklo_ps(row[2], row[3]);
-    __m256 high01 = _mm256_unpackhi_ps(row[0], row[1]), high23 = _mm256_unpackhi_ps(row[2], row[3]);
-    out[0] = _mm256_shuffle_ps(low01, low23, 0x44);
-    out[1] = _mm256_shuffle_ps(low01, low23, 0xee);
-    out[2] = _mm256_shuffle_ps(high01, high23, 0x44);
-    out[3] = _mm256_shuffle_ps(high01, high23, 0xee);
+    for (int k = 0; k < 4; k++) /* lanes k, k + 4 */
+        quad[k] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(QUAD_LANE(k))), _mm_loadu_ps(QUAD_LANE(k + 4)), 1);
 #else
-    real turned[4][VEC_LANES];
-    for (int i = 0; i < VEC_LANES; i++)
-        for (int c = 0; c < 4; c++) turned[c][i] = GATHER_ROW(i)[c];
-    for (int c = 0; c < 4; c++) out[c] = vec_load(turned[c]);
+    for (int k = 0; k < 4; k++) quad[k] = vec_load(QUAD_LANE(k % VEC_LANES) + k / VEC_LANES * VEC_LANES);
 #endif
-#undef GATHER_ROW
+#undef QUAD_LANE
 }
 
-/* The way back for VEC_LANES rows that follow one another: component c of lane i goes to base[i · stride + c]. */
-SIMD_INLINE void vec_scatter4(real *base, int stride, const vec in[4]) {
+/* From base + i · stride. */
+SIMD_INLINE void quad_load(const real *base, int stride, vec quad[4]) {
+    static const int32_t lanes[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    quad_gather(base, lanes, stride, quad);
+}
+
+SIMD_INLINE void quad_store(real *base, int stride, const vec quad[4]) {
+    for (int k = 0; k < 4; k++) {
+#if SUNDER_SIMD == 2 || (SUNDER_SIMD == 1 && SUNDER_PRECISION == 32)
+        for (int part = 0; part < VEC_LANES / 4; part++) {
+            int lane = SUNDER_PRECISION == 64 ? 4 * (k / 2) + k % 2 + 2 * part : 4 * part + k;
+            memcpy(base + (int64_t)lane * stride, (const real *)&quad[k] + 4 * part, 4 * sizeof(real));
+        }
+#else
+        vec_store(base + (int64_t)(k % VEC_LANES) * stride + k / VEC_LANES * VEC_LANES, quad[k]);
+#endif
+    }
+}
+
+/* out[c] holds component c of each lane. */
+SIMD_INLINE void quad_turn(const vec quad[4], vec out[4]) {
 #if SUNDER_SIMD > 0 && SUNDER_PRECISION == 32
 #if SUNDER_SIMD == 2
-#define SCATTER_OP(name) _mm512_##name
-    typedef __m512 row_vec;
+#define QUAD_OP(name) _mm512_##name
 #else
-#define SCATTER_OP(name) _mm256_##name
-    typedef __m256 row_vec;
+#define QUAD_OP(name) _mm256_##name
 #endif
-    row_vec low01 = SCATTER_OP(unpacklo_ps)(in[0], in[1]), low23 = SCATTER_OP(unpacklo_ps)(in[2], in[3]);
-    row_vec high01 = SCATTER_OP(unpackhi_ps)(in[0], in[1]), high23 = SCATTER_OP(unpackhi_ps)(in[2], in[3]);
-    /* row k holds lanes k, k + 4, … */
-    const row_vec row[4] = {SCATTER_OP(shuffle_ps)(low01, low23, 0x44), SCATTER_OP(shuffle_ps)(low01, low23, 0xee),
-                            SCATTER_OP(shuffle_ps)(high01, high23, 0x44), SCATTER_OP(shuffle_ps)(high01, high23, 0xee)};
-#undef SCATTER_OP
-    for (int k = 0; k < 4; k++)
-        for (int part = 0; part < VEC_LANES / 4; part++) memcpy(base + (int64_t)(4 * part + k) * stride, (const real *)&row[k] + 4 * part, 4 * sizeof(real));
+    vec low01 = QUAD_OP(unpacklo_ps)(quad[0], quad[1]), low23 = QUAD_OP(unpacklo_ps)(quad[2], quad[3]);
+    vec high01 = QUAD_OP(unpackhi_ps)(quad[0], quad[1]), high23 = QUAD_OP(unpackhi_ps)(quad[2], quad[3]);
+    out[0] = QUAD_OP(shuffle_ps)(low01, low23, 0x44);
+    out[1] = QUAD_OP(shuffle_ps)(low01, low23, 0xee);
+    out[2] = QUAD_OP(shuffle_ps)(high01, high23, 0x44);
+    out[3] = QUAD_OP(shuffle_ps)(high01, high23, 0xee);
+#undef QUAD_OP
+#elif SUNDER_SIMD == 2
+    vec even01 = _mm512_unpacklo_pd(quad[0], quad[1]), even23 = _mm512_unpacklo_pd(quad[2], quad[3]);
+    vec odd01 = _mm512_unpackhi_pd(quad[0], quad[1]), odd23 = _mm512_unpackhi_pd(quad[2], quad[3]);
+    out[0] = _mm512_shuffle_f64x2(even01, even23, 0x88);
+    out[1] = _mm512_shuffle_f64x2(odd01, odd23, 0x88);
+    out[2] = _mm512_shuffle_f64x2(even01, even23, 0xdd);
+    out[3] = _mm512_shuffle_f64x2(odd01, odd23, 0xdd);
+#elif SUNDER_SIMD == 1 || SUNDER_PRECISION == 32
+    for (int c = 0; c < 4; c++) out[c] = quad[c];
+    vec_transpose(out);
 #else
-    for (int i = 0; i < VEC_LANES; i++)
-        for (int c = 0; c < 4; c++) base[(int64_t)i * stride + c] = in[c][i];
+    for (int c = 0; c < 4; c += 2) {
+        out[c] = __builtin_shufflevector(quad[c], quad[c + 1], 0, 2);
+        out[c + 1] = __builtin_shufflevector(quad[c], quad[c + 1], 1, 3);
+    }
 #endif
+}
+
+/* The way back: in[c] holds component c. */
+SIMD_INLINE void quad_turn_back(const vec in[4], vec quad[4]) {
+#if SUNDER_SIMD == 2 && SUNDER_PRECISION == 64
+    vec even01 = __builtin_shufflevector(in[0], in[2], 0, 1, 8, 9, 2, 3, 10, 11), even23 = __builtin_shufflevector(in[0], in[2], 4, 5, 12, 13, 6, 7, 14, 15);
+    vec odd01 = __builtin_shufflevector(in[1], in[3], 0, 1, 8, 9, 2, 3, 10, 11), odd23 = __builtin_shufflevector(in[1], in[3], 4, 5, 12, 13, 6, 7, 14, 15);
+    quad[0] = _mm512_unpacklo_pd(even01, odd01);
+    quad[1] = _mm512_unpackhi_pd(even01, odd01);
+    quad[2] = _mm512_unpacklo_pd(even23, odd23);
+    quad[3] = _mm512_unpackhi_pd(even23, odd23);
+#else
+    quad_turn(in, quad); /* its own inverse */
+#endif
+}
+
+/* Four reals from base + index[i] · stride of each lane: out[c] holds component c. */
+SIMD_INLINE void vec_gather4(const real *base, const int32_t *index, int stride, vec out[4]) {
+    vec quad[4];
+    quad_gather(base, index, stride, quad);
+    quad_turn(quad, out);
 }
 
 #endif

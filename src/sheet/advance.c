@@ -161,49 +161,69 @@ static void collide(const pack_work *w) {
 
 /* ---- positions --------------------------------------------------------------------------------------------------- */
 
-/* Where a lane has run away, or its θ is not finite, the comparison fails. */
-static void find_fault(const pack_work *w, int first, vec_mask good) {
-    unsigned bad = 0;
-    for (int i = 0; i < VEC_LANES; i++) bad |= (unsigned)(good[i] == 0) << i;
-    if (bad && !w->result->fault) w->result->fault = w->pack * PACK + first + __builtin_ctz(bad) + 1;
+/* The first of these lanes that has run away, or whose θ is not finite. */
+__attribute__((cold)) static void find_fault(const pack_work *w, int first, unsigned near) {
+    if (w->result->fault) return;
+    for (int i = 0; i < VEC_LANES; i++) {
+        if ((near >> i & 1) && isfinite((double)node_at(w->state, w->pack, first + i)[3])) continue;
+        w->result->fault = w->pack * PACK + first + i + 1;
+        return;
+    }
 }
 
-/* high + low + step, with high the rounded sum: the error of the addition is kept (Knuth's two-sum). Padding, which has no area, stays. */
+/* high + low + step, with high the rounded sum: the error of the addition is kept (Knuth's two-sum). θ and the 0 beside the low parts take a step of 0.
+ * Returns 0 where all is finite, else NaN. */
+SIMD_INLINE vec move_quads(real *node, const vec step[4]) {
+    vec high[4], low[4], finite = vec_all(0);
+    quad_load(node, NODE, high);
+    quad_load(node + NODE_LOW, NODE, low);
+    for (int k = 0; k < 4; k++) {
+        vec moved = low[k] + step[k], sum = high[k] + moved, back = sum - high[k];
+        low[k] = (high[k] - (sum - back)) + (moved - back);
+        high[k] = sum;
+        finite = finite + (sum - sum);
+    }
+    quad_store(node, NODE, high);
+    quad_store(node + NODE_LOW, NODE, low);
+    return finite;
+}
+
+/* Padding, which has no area, stays. */
 static void move(const pack_work *w) {
     sheet *s = w->state;
-    vec farthest = vec_all((real)(0.5 * s->definition.bodies[s->packs[w->pack].body].spacing)), fastest = vec_all(0);
+    real farthest = (real)(0.5 * s->definition.bodies[s->packs[w->pack].body].spacing);
+    vec fastest = vec_all(0);
     for (int part = 0; part < PACK_PARTS; part++) {
         int first = part * VEC_LANES;
-        int32_t self[VEC_LANES];
-        for (int i = 0; i < VEC_LANES; i++) self[i] = w->pack * PACK + first + i;
-        vec high[4], low[4], way = vec_all(0), speed = vec_all(0), area = vec_load(s->area + (int64_t)w->pack * PACK + first);
-        vec_gather4(s->node, self, NODE, high);
-        vec_gather4(s->node + NODE_LOW, self, NODE, low);
+        vec step[4], quad[4], way = vec_all(0), speed = vec_all(0);
+        vec_mask alive = vec_load(s->area + (int64_t)w->pack * PACK + first) > 0;
         for (int c = 0; c < 3; c++) {
-            vec v = vec_load(s->velocity + ((int64_t)w->pack * 3 + c) * PACK + first), step = vec_select(area > 0, v * vec_all(w->way), vec_all(0));
-            vec moved = low[c] + step, sum = high[c] + moved, back = sum - high[c];
-            low[c] = (high[c] - (sum - back)) + (moved - back);
-            high[c] = sum;
-            way = way + step * step;
+            vec v = vec_load(s->velocity + ((int64_t)w->pack * 3 + c) * PACK + first);
+            step[c] = vec_select(alive, v * vec_all(w->way), vec_all(0));
+            way = way + step[c] * step[c];
             speed = speed + v * v;
         }
-        fastest = vec_max(fastest, vec_select(area > 0, speed, vec_all(0)));
-        vec_scatter4(node_at(s, w->pack, first), NODE, high);
-        vec_scatter4(node_at(s, w->pack, first) + NODE_LOW, NODE, low);
-        find_fault(w, first, way + (high[3] - high[3]) < farthest * farthest);
+        step[3] = vec_all(0);
+        fastest = vec_max(fastest, vec_select(alive, speed, vec_all(0)));
+        quad_turn_back(step, quad);
+        vec finite = move_quads(node_at(s, w->pack, first), quad);
+        vec_mask near = way < farthest * farthest;
+        if (vec_any(~near | (finite != 0))) find_fault(w, first, vec_bits(near));
     }
-    real most = vec_largest(fastest);
-    if (most > w->result->fastest) w->result->fastest = most;
+    if (vec_any(fastest > w->result->fastest)) w->result->fastest = vec_largest(fastest);
 }
 
 static void change_velocities(const pack_work *w) {
     sheet *s = w->state;
     for (int c = 0; c < 3; c++) {
         real *v = s->velocity + ((int64_t)w->pack * 3 + c) * PACK, step = (real)s->definition.gravity[c] * w->dt;
+        if (step == 0) continue;
         for (int i = 0; i < PACK; i++) v[i] += step;
     }
-    for (int e = 0; e < SHEET_EFFECTS; e++)
-        if ((s->mask >> e & 1) && sheet_effect_table[e]->sheet->velocity) sheet_effect_table[e]->sheet->velocity(w);
+    for (uint32_t left = s->mask; left; left &= left - 1) {
+        const sheet_stages *stages = sheet_effect_table[__builtin_ctz(left)]->sheet;
+        if (stages->velocity) stages->velocity(w);
+    }
 }
 
 static void advance_pack(const pack_work *w) {

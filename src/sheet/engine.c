@@ -21,7 +21,14 @@ static void make_plans(sheet *s) {
     }
 }
 
-static void make_constants(sheet *s) {
+static double least_limit(const sheet_body *b, const sheet_network *n) {
+    double least = HUGE_VAL;
+    for (int64_t k = n->start[b->first]; k < n->start[b->first + b->count]; k++)
+        if (n->weight[k] > 0) least = fmin(least, n->limit[k]);
+    return least;
+}
+
+static void make_constants(sheet *s, const sheet_network *n) {
     for (int k = 0; k < s->definition.body_count; k++) {
         const sheet_body *body = &s->definition.bodies[k];
         const sheet_material *material = &s->definition.materials[body->material];
@@ -36,8 +43,10 @@ static void make_constants(sheet *s) {
                               .heat = surface * p->capacity,
                               .dilation_modulus = p->state ? p->E * body->thickness * (3 * p->nu - 1) / (2 * (1 - p->nu * p->nu)) : 0};
         for (int c = 0; c < 3; c++) b->wind[c] = (real)p->wind[c];
-        bool feels = p->alpha != 0 || p->stiffness_loss != 0 || p->toughness_loss != 0 || p->stretch_loss != 0;
-        b->flags = (p->fractures ? BOND_FRACTURES : 0u) | (feels ? BOND_FEELS_THETA : 0u) | (p->state ? BOND_STATE : 0u);
+        bool softens = p->stiffness_loss != 0 || p->toughness_loss != 0 || p->stretch_loss != 0;
+        b->flags = (p->fractures ? BOND_FRACTURES : 0u) | (p->state ? BOND_STATE : 0u) | (softens || p->alpha != 0 ? BOND_FEELS_THETA : 0u) |
+                   (softens ? BOND_SOFTENS : 0u);
+        if (p->fractures) b->least_limit = (real)least_limit(body, n);
         for (int e = 0; e < SHEET_EFFECTS; e++) {
             if (!material->effects[e].on || !(s->mask >> e & 1) || !sheet_effect_table[e]->sheet->bonds) continue;
             b->law_effect = e;
@@ -64,7 +73,7 @@ static status build(sheet *s, bool first, report *r) {
         code = first ? sheet_layout(s, &n, r) : sheet_refill(s, &n, r);
         if (first && code == STATUS_OK && (s->mask >> SHEET_EFFECT_multirate & 1)) code = sheet_rates_create(s, r);
         if (code == STATUS_OK && s->rates) sheet_rates_load(s, &n);
-        make_constants(s);
+        make_constants(s, &n);
     }
     network_free(&n);
     return code;
@@ -83,20 +92,15 @@ static void dilate(const pack_work *w) {
     if (!(w->body->flags & BOND_STATE)) return;
     for (int part = 0; part < PACK_PARTS; part++) {
         int first = part * VEC_LANES;
-        int32_t self[VEC_LANES];
-        for (int i = 0; i < VEC_LANES; i++) self[i] = w->pack * PACK + first + i;
-        vec high[4], low[4], far[4], far_low[4], sum = vec_all(0);
-        vec_gather4(s->node, self, NODE, high);
-        vec_gather4(s->node + NODE_LOW, self, NODE, low);
+        own_place own;
+        vec r[4], sum = vec_all(0);
+        own_place_load(s, w->pack, first, &own);
         for (int32_t k = 0; k < pack->slots; k++) {
             int64_t at = ((int64_t)pack->first_slot + k) * PACK + first;
-            vec_gather4(s->node, s->neighbour + at, NODE, far);
-            vec_gather4(s->node + NODE_LOW, s->neighbour + at, NODE, far_low);
-            vec r[3];
-            for (int c = 0; c < 3; c++) r[c] = (far[c] - high[c]) + (far_low[c] - low[c]);
+            bond_vector(s, s->neighbour + at, &own, r);
             vec square = vec_fma(r[0], r[0], vec_fma(r[1], r[1], r[2] * r[2]));
             vec eta = vec_sqrt(vec_max(square, vec_all((real)1e-30))) * vec_load(s->inverse + at) - 1;
-            vec theta = (high[3] + far[3]) * (real)0.5, q = eta - w->body->alpha * theta;
+            vec theta = r[3] * (real)0.5, q = eta - w->body->alpha * theta;
             vec left = vec_sqrt(vec_max(1 - w->body->stiffness_loss * theta, vec_all(w->body->floor)));
             sum = vec_fma(vec_load(s->dilation + at) * left, q, sum);
         }

@@ -20,7 +20,7 @@
 enum {
     PACK = SHEET_PACK,
     PACK_PARTS = PACK / VEC_LANES,
-    NODE = 8,        /* x y z θ, low parts of x y z, nothing */
+    NODE = 8,        /* x y z θ, low parts of x y z, 0 */
     NODE_LOW = 4,
     GROUP_PACKS = 8, /* what a thread takes at a time, and what results are kept for */
     LAW_CONSTANTS = 4,
@@ -29,7 +29,7 @@ enum {
 #define BROKEN ((real)1e30)
 
 /* What the bonds of a body do beside their law: the loop over bonds is compiled for each combination. */
-enum { BOND_FRACTURES = 1, BOND_FEELS_THETA = 2, BOND_STATE = 4, BOND_COMBINATIONS = 8 };
+enum { BOND_FRACTURES = 1, BOND_STATE = 2, BOND_FEELS_THETA = 4, BOND_SOFTENS = 8 /* only with the one before */ };
 
 typedef struct sheet_pack {
     int32_t body, count; /* real particles */
@@ -44,6 +44,7 @@ typedef struct body_constants {
     real alpha;
     bool total, toughness_softens;
     real stiffness_loss, toughness_loss, stretch_loss, floor;
+    real least_limit; /* the smallest critical stretch of its bonds */
     real decay, damping, drag, wind[3]; /* drag: per mass */
     real bending;                       /* B/ρh */
     double contact_reach, contact_stiffness; /* distance, force per approach */
@@ -175,6 +176,29 @@ SIMD_INLINE real *node_at(const sheet *s, int32_t pack, int lane) {
 
 SIMD_INLINE double coordinate_of(const real *node, int c) {
     return (double)node[c] + (double)node[NODE_LOW + c];
+}
+
+/* The places of VEC_LANES particles that follow one another, for what leads from them to others: quads (simd.h), with −θ where θ lies. */
+typedef struct own_place {
+    vec high[4], low[4];
+} own_place;
+
+SIMD_INLINE void own_place_load(const sheet *s, int32_t pack, int first, own_place *own) {
+    static const real signs[] = {1, 1, 1, -1};
+    vec sign[4];
+    quad_load(node_at(s, pack, first), NODE, own->high);
+    quad_load(node_at(s, pack, first) + NODE_LOW, NODE, own->low);
+    quad_load(signs, 0, sign);
+    for (int k = 0; k < 4; k++) own->high[k] = own->high[k] * sign[k];
+}
+
+/* What leads to their neighbours: x y z, and the sum of both ends' θ. Turned when the differences are taken: a record's last real is 0. */
+SIMD_INLINE void bond_vector(const sheet *s, const int32_t *neighbour, const own_place *own, vec r[4]) {
+    vec high[4], low[4];
+    quad_gather(s->node, neighbour, NODE, high);
+    quad_gather(s->node + NODE_LOW, neighbour, NODE, low);
+    for (int k = 0; k < 4; k++) high[k] = (high[k] - own->high[k]) + (low[k] - own->low[k]);
+    quad_turn(high, r);
 }
 
 /* layout.c: orders particles, fills all arrays from a calibrated network; the bonds alone when a knob was turned. Errors: out of memory. */

@@ -14,17 +14,14 @@ static void curve(const pack_work *w) {
     const sheet_pack *pack = &s->packs[w->pack];
     for (int part = 0; part < PACK_PARTS; part++) {
         int first = part * VEC_LANES;
-        int32_t self[VEC_LANES];
-        for (int i = 0; i < VEC_LANES; i++) self[i] = w->pack * PACK + first + i;
-        vec high[4], low[4], far[4], far_low[4], sum[3] = {vec_all(0), vec_all(0), vec_all(0)}, total = vec_all(0);
-        vec_gather4(s->node, self, NODE, high);
-        vec_gather4(s->node + NODE_LOW, self, NODE, low);
+        own_place own;
+        vec r[4], sum[3] = {vec_all(0), vec_all(0), vec_all(0)}, total = vec_all(0);
+        own_place_load(s, w->pack, first, &own);
         for (int32_t k = 0; k < pack->slots; k++) {
             int64_t at = ((int64_t)pack->first_slot + k) * PACK + first;
             vec laplace = vec_load(s->laplace + at);
-            vec_gather4(s->node, s->neighbour + at, NODE, far);
-            vec_gather4(s->node + NODE_LOW, s->neighbour + at, NODE, far_low);
-            for (int c = 0; c < 3; c++) sum[c] = vec_fma(laplace, (far[c] - high[c]) + (far_low[c] - low[c]), sum[c]);
+            bond_vector(s, s->neighbour + at, &own, r);
+            for (int c = 0; c < 3; c++) sum[c] = vec_fma(laplace, r[c], sum[c]);
             total = total + laplace;
         }
         vec_mask whole = total == vec_load(s->whole + (int64_t)w->pack * PACK + first);

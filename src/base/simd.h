@@ -33,7 +33,7 @@ typedef int64_t real_bits;
 #define VEC_BYTES 16
 #endif
 
-enum { VEC_LANES = VEC_BYTES / (int)sizeof(real) };
+enum { VEC_LANES = VEC_BYTES / (int)sizeof(real), VEC_REGISTERS = VEC_BYTES == 64 ? 32 : 16 };
 
 typedef real vec __attribute__((vector_size(VEC_BYTES)));
 typedef real_bits vec_mask __attribute__((vector_size(VEC_BYTES))); /* all ones where true */
@@ -230,42 +230,22 @@ SIMD_INLINE void vec_transpose(vec rows[VEC_LANES]) {
 #endif
 }
 
-/* Four and eight reals, whatever the width of vec. */
+/* Four reals, whatever the width of vec. */
 typedef real vec4 __attribute__((vector_size(4 * sizeof(real))));
-typedef real vec8 __attribute__((vector_size(8 * sizeof(real))));
 
 /* Through pointers: wider vectors than the instruction set has are no values to return. */
 SIMD_INLINE void vec4_load(vec4 *to, const real *from) {
+#if SUNDER_SIMD > 0 && SUNDER_PRECISION == 32
+    *to = _mm_loadu_ps(from);
+#elif SUNDER_SIMD > 0
+    *to = _mm256_loadu_pd(from); /* as a copy, where `to` is in memory, it would be two halves: whoever reads both waits */
+#else
     memcpy(to, from, sizeof *to);
-}
-
-SIMD_INLINE void vec8_load(vec8 *to, const real *from) {
-    memcpy(to, from, sizeof *to);
+#endif
 }
 
 SIMD_INLINE void vec4_store(real *to, const vec4 *from) {
     memcpy(to, from, sizeof *from);
-}
-
-SIMD_INLINE void vec8_store(real *to, const vec8 *from) {
-    memcpy(to, from, sizeof *from);
-}
-
-/* ababab… of a pair; aabbccdd of four. */
-SIMD_INLINE void vec8_pairs(vec8 *to, const real *pair) {
-#if SUNDER_SIMD > 0 && SUNDER_PRECISION == 32
-    *to = _mm256_castpd_ps(_mm256_broadcast_sd((const double *)(const void *)pair));
-#elif SUNDER_SIMD == 2
-    *to = _mm512_broadcast_f64x2(_mm_loadu_pd(pair));
-#else
-    for (int i = 0; i < 8; i++) (*to)[i] = pair[i % 2];
-#endif
-}
-
-SIMD_INLINE void vec8_doubled(vec8 *to, const real *four) {
-    vec4 v;
-    vec4_load(&v, four);
-    *to = __builtin_shufflevector(v, v, 0, 0, 1, 1, 2, 2, 3, 3);
 }
 
 /* sum += scale · a, fused where vec_fma is. */
@@ -279,14 +259,67 @@ SIMD_INLINE void vec4_add_scaled(vec4 *sum, const vec4 *a, real scale) {
 #endif
 }
 
-SIMD_INLINE void vec8_add_scaled(vec8 *sum, const vec8 *a, real scale) {
+/* Part of a row of four pairs: as many of its eight reals as one register holds. */
+enum { PAIRS = 8, PAIRS_LANES = VEC_LANES < PAIRS ? VEC_LANES : PAIRS };
+typedef real vec_pairs __attribute__((vector_size(PAIRS_LANES * sizeof(real))));
+
+SIMD_INLINE vec_pairs pairs_load(const real *from) {
+    vec_pairs v;
+    memcpy(&v, from, sizeof v);
+    return v;
+}
+
+SIMD_INLINE void pairs_store(real *to, vec_pairs v) {
+    memcpy(to, &v, sizeof v);
+}
+
+/* ababab… of a pair. */
+SIMD_INLINE vec_pairs pairs_repeat(const real *pair) {
 #if SUNDER_SIMD > 0 && SUNDER_PRECISION == 32
-    *sum = _mm256_fmadd_ps(*a, _mm256_set1_ps(scale), *sum);
+    return _mm256_castpd_ps(_mm256_broadcast_sd((const double *)(const void *)pair));
 #elif SUNDER_SIMD == 2
-    *sum = _mm512_fmadd_pd(*a, _mm512_set1_pd(scale), *sum);
+    return _mm512_broadcast_f64x2(_mm_loadu_pd(pair));
+#elif SUNDER_SIMD == 1
+    return _mm256_broadcast_pd((const __m128d *)(const void *)pair);
 #else
-    *sum += *a * scale;
+    vec_pairs v;
+    for (int i = 0; i < PAIRS_LANES; i++) v[i] = pair[i % 2];
+    return v;
 #endif
+}
+
+/* aabbccdd, or as much of it as fits. */
+SIMD_INLINE vec_pairs pairs_double(const real *from) {
+#if SUNDER_SIMD == 1 && SUNDER_PRECISION == 64
+    return _mm256_permute4x64_pd(_mm256_castpd128_pd256(_mm_loadu_pd(from)), 0x50);
+#elif SUNDER_SIMD > 0
+    vec4 v;
+    vec4_load(&v, from);
+    return __builtin_shufflevector(v, v, 0, 0, 1, 1, 2, 2, 3, 3);
+#else
+    vec_pairs v;
+    for (int i = 0; i < PAIRS_LANES; i++) v[i] = from[i / 2];
+    return v;
+#endif
+}
+
+/* sum + scale · a, fused where vec_fma is. */
+SIMD_INLINE vec_pairs pairs_add_scaled(vec_pairs sum, vec_pairs a, real scale) {
+#if SUNDER_SIMD > 0 && SUNDER_PRECISION == 32
+    return _mm256_fmadd_ps(a, _mm256_set1_ps(scale), sum);
+#elif SUNDER_SIMD == 2
+    return _mm512_fmadd_pd(a, _mm512_set1_pd(scale), sum);
+#elif SUNDER_SIMD == 1
+    return _mm256_fmadd_pd(a, _mm256_set1_pd(scale), sum);
+#else
+    return sum + a * scale;
+#endif
+}
+
+/* The sum (0 + 2) + (1 + 3) of the lanes. */
+SIMD_INLINE real vec4_sum(const vec4 *a) {
+    vec4 half = *a + __builtin_shufflevector(*a, *a, 2, 3, 0, 1);
+    return half[0] + half[1];
 }
 
 /* out[0 … 2] = the sums (0 + 2) + (1 + 3) of the lanes of three. */
@@ -301,8 +334,8 @@ SIMD_INLINE void vec4_sums(const vec4 *a, const vec4 *b, const vec4 *c, vec4 *ou
 enum {
     ROW = 16,
     ROW_PARTS = ROW / VEC_LANES,
-    /* The nine rows around a particle, and what is added to them, stay in registers; there are 32 of 64 bytes, else 16. */
-    ROWS_FIT_REGISTERS = VEC_BYTES == 64,
+    /* The nine rows around a particle, and what is added to them, stay in registers. */
+    ROWS_FIT_REGISTERS = 9 * ROW_PARTS < VEC_REGISTERS,
 };
 
 /* Whether a part of a row holds one of its first nodes. */

@@ -24,30 +24,9 @@ SIMD_INLINE void cubic_weights(vec u, vec w[4]) {
     w[3] = sixth * t * t * t;
 }
 
-/* Second derivatives of the same. */
-SIMD_INLINE void quadratic_curvatures(vec w[4]) {
-    w[0] = vec_all(1);
-    w[1] = vec_all(-2);
-    w[2] = vec_all(1);
-    w[3] = vec_all(0);
-}
-
-SIMD_INLINE void cubic_curvatures(vec u, vec w[4]) {
-    vec t = u - 1, s = 1 - t;
-    w[0] = s;
-    w[1] = 3 * t - 2;
-    w[2] = 3 * s - 2;
-    w[3] = t;
-}
-
 SIMD_INLINE void kernel_weights(kernel_kind kernel, vec u, vec w[4]) {
     if (kernel == KERNEL_QUADRATIC) quadratic_weights(u, w);
     else cubic_weights(u, w);
-}
-
-SIMD_INLINE void kernel_curvatures(kernel_kind kernel, vec u, vec w[4]) {
-    if (kernel == KERNEL_QUADRATIC) quadratic_curvatures(w);
-    else cubic_curvatures(u, w);
 }
 
 /* The first node of each axis (in block coordinates) and the distances from it. */

@@ -118,50 +118,89 @@ SIMD_INLINE void scatter_momentum(const tile_work *w, const pack_stream *stream,
     }
 }
 
-/* The damage channel: its weights are in the momentum's slots. */
+/* The damage channel's own records: weights where the momentum's are, and what brings particles into an order by z. */
+enum { P2G_PLANE = P2G_DAMAGE + 2 };
+
 SIMD_INLINE void damage_records(const tile_work *w, kernel_kind kernel) {
     const solid *s = w->state;
     for (int k = 0; k < w->tile->pack_count; k++)
         for (int part = 0; part < PACK_PARTS; part++) {
             int32_t pack = w->tile->first_pack + k;
             kernel_place at = kernel_locate(kernel, vec3v_load(&s->fields[FIELD_POSITION], pack, part));
-            const vec zero = vec_all(0);
-            vec columns[RECORD - P2G_WZ] = {zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, window_index(at.base),
-                                            vec_load(field_at(&s->fields[s->damage_field], pack, 0, part)), vec_all(1), zero};
+            vec columns[RECORD - P2G_WZ];
             kernel_weights(kernel, at.u.z, columns + P2G_WZ - P2G_WZ);
             kernel_weights(kernel, at.u.x, columns + P2G_WX - P2G_WZ);
             kernel_weights(kernel, at.u.y, columns + P2G_WY - P2G_WZ);
+            columns[P2G_NODE - P2G_WZ] = window_index(at.base);
+            columns[P2G_DAMAGE - P2G_WZ] = vec_load(field_at(&s->fields[s->damage_field], pack, 0, part));
+            columns[P2G_DAMAGE + 1 - P2G_WZ] = vec_all(1);
+            columns[P2G_PLANE - P2G_WZ] = at.base.z - (real)WINDOW_LOW;
             records_store(w->scratch->records, k * PACK + part * VEC_LANES, P2G_WZ, columns, RECORD - P2G_WZ);
         }
 }
 
-/* Σ w d and Σ w, side by side, of particles that share a first node. */
+/* Adds to Σ w d and Σ w, side by side, of particles that share a first node: in registers, as many rows of nodes at once as there are registers for. */
 SIMD_INLINE int scatter_damage_run(const real *records, int p, int count, int nodes, real *window) {
     real node = records[p * RECORD + P2G_NODE], *first = window + (int)node * DAMAGE_NODE;
-    vec8 sum[16];
-    for (int i = 0; i < nodes; i++)
-        for (int j = 0; j < nodes; j++) vec8_load(&sum[i * nodes + j], first + (i * STRIDE_X + j * STRIDE_Y) * DAMAGE_NODE);
-    for (; p < count && records[p * RECORD + P2G_NODE] == node; p++) {
-        const real *r = records + p * RECORD;
-        vec8 row, value;
-        vec8_doubled(&row, r + P2G_WZ);
-        vec8_pairs(&value, r + P2G_DAMAGE);
-        row *= value;
+    int planes = nodes * nodes + 4 <= VEC_REGISTERS ? nodes : nodes / 2, next = p;
+    for (int lane = 0; lane < PAIRS; lane += PAIRS_LANES)
+        for (int from = 0; from < nodes; from += planes) {
+            vec_pairs sum[16];
+            real *to = first + from * STRIDE_X * DAMAGE_NODE + lane;
+            for (int i = 0; i < planes; i++)
+                for (int j = 0; j < nodes; j++) sum[i * nodes + j] = pairs_load(to + (i * STRIDE_X + j * STRIDE_Y) * DAMAGE_NODE);
+            for (next = p; next < count && records[next * RECORD + P2G_NODE] == node; next++) {
+                const real *r = records + next * RECORD;
+                vec_pairs row = pairs_double(r + P2G_WZ + lane / 2) * pairs_repeat(r + P2G_DAMAGE);
+                for (int i = 0; i < planes; i++) {
+                    vec_pairs here = row * r[P2G_WX + from + i];
+                    for (int j = 0; j < nodes; j++) sum[i * nodes + j] = pairs_add_scaled(sum[i * nodes + j], here, r[P2G_WY + j]);
+                }
+            }
+            for (int i = 0; i < planes; i++)
+                for (int j = 0; j < nodes; j++) pairs_store(to + (i * STRIDE_X + j * STRIDE_Y) * DAMAGE_NODE, sum[i * nodes + j]);
+        }
+    return next;
+}
+
+/* The same of one particle, in memory. */
+SIMD_INLINE void scatter_damage_particle(const real *r, int nodes, real *window) {
+    real *first = window + (int)r[P2G_NODE] * DAMAGE_NODE;
+    for (int lane = 0; lane < PAIRS; lane += PAIRS_LANES) {
+        vec_pairs row = pairs_double(r + P2G_WZ + lane / 2) * pairs_repeat(r + P2G_DAMAGE);
         for (int i = 0; i < nodes; i++) {
-            vec8 here = row * r[P2G_WX + i];
-            for (int j = 0; j < nodes; j++) vec8_add_scaled(&sum[i * nodes + j], &here, r[P2G_WY + j]);
+            vec_pairs here = row * r[P2G_WX + i];
+            for (int j = 0; j < nodes; j++) {
+                real *to = first + (i * STRIDE_X + j * STRIDE_Y) * DAMAGE_NODE + lane;
+                pairs_store(to, pairs_add_scaled(pairs_load(to), here, r[P2G_WY + j]));
+            }
         }
     }
-    for (int i = 0; i < nodes; i++)
-        for (int j = 0; j < nodes; j++) vec8_store(first + (i * STRIDE_X + j * STRIDE_Y) * DAMAGE_NODE, &sum[i * nodes + j]);
-    return p;
+}
+
+/* Particles whose kernel is not that which they are sorted by seldom follow one that has the same nodes, but often one whose rows are a node further
+ * along z; and to load what two stores before have written waits until both are in the cache. So they go by planes of z. */
+SIMD_INLINE void scatter_damage_planes(const real *records, int count, int nodes, real *window) {
+    uint8_t plane[WINDOW][TILE_PARTICLES];
+    int length[WINDOW] = {0};
+    for (int p = 0; p < count; p++) {
+        int z = (int)records[p * RECORD + P2G_PLANE];
+        plane[z][length[z]++] = (uint8_t)p;
+    }
+    for (int z = 0; z < WINDOW; z++)
+        for (int n = 0; n < length[z]; n++) scatter_damage_particle(records + plane[z][n] * RECORD, nodes, window);
 }
 
 /* With the momentum's own kernel its records serve both. */
 SIMD_INLINE void scatter_damage(const tile_work *w, kernel_kind kernel, kernel_kind momentum, real *window) {
-    if (kernel != momentum) damage_records(w, kernel);
-    for (int p = 0; p < w->tile->count;)
-        p = scatter_damage_run(w->scratch->records, p, w->tile->count, kernel == KERNEL_QUADRATIC ? 3 : 4, window);
+    const real *records = w->scratch->records;
+    int nodes = kernel == KERNEL_QUADRATIC ? 3 : 4;
+    if (kernel != momentum) {
+        damage_records(w, kernel);
+        scatter_damage_planes(records, w->tile->count, nodes, window);
+        return;
+    }
+    for (int p = 0; p < w->tile->count;) p = scatter_damage_run(records, p, w->tile->count, nodes, window);
 }
 
 /* Where nothing is damaged, d and Δd are 0 and need no transfer: slots that damaged particles can reach are marked, and blocks at such slots
@@ -301,53 +340,131 @@ SIMD_INLINE vec3v flip_velocity(const tile_work *w, int k, int part, vec3v grid)
     return (vec3v){grid.x + ratio * (own.x - old[0]), grid.y + ratio * (own.y - old[1]), grid.z + ratio * (own.z - old[2])};
 }
 
-/* Slots of a particle's record for the Laplacian: weights as in a gather's, then curvatures. */
-enum { CURVE = 16 };
+/* What a quadratic kernel's Laplacian takes from the nodes of particles that share the first of them: second differences along x, y and z, in rows
+ * along z (those that records tell of), z and y. Its N'' are the same for all of them, so that is all that depends on d. */
+typedef struct second_differences {
+    vec4 x[3], y[3], z[3];
+} second_differences;
 
-SIMD_INLINE void curve_records(const tile_work *w, kernel_kind kernel) {
+/* a − 2 b + c */
+SIMD_INLINE void second_difference(const vec4 *a, const vec4 *b, const vec4 *c, vec4 *out) {
+    *out = *a + *c;
+    vec4_add_scaled(out, b, -2);
+}
+
+/* From the row's first node and from the kernel's, which is `shift` further. */
+SIMD_INLINE void differ_nodes(const real *first, int shift, second_differences *to) {
+    vec4 d[3][3];
+    SIMD_UNROLL
+    for (int i = 0; i < 3; i++) {
+        vec4 along_z[3];
+        SIMD_UNROLL
+        for (int j = 0; j < 3; j++) {
+            const real *row = first + i * STRIDE_X + j * STRIDE_Y;
+            vec4 start, middle, last;
+            vec4_load(&d[i][j], row);
+            vec4_load(&start, row + shift);
+            vec4_load(&middle, row + shift + 1);
+            vec4_load(&last, row + shift + 2);
+            second_difference(&start, &middle, &last, &along_z[j]);
+        }
+        second_difference(&d[i][0], &d[i][1], &d[i][2], &to->y[i]);
+        vec4 pair = __builtin_shufflevector(along_z[0], along_z[1], 0, 4, 0, 4);
+        to->z[i] = __builtin_shufflevector(pair, along_z[2], 0, 1, 4, 4);
+    }
+    SIMD_UNROLL
+    for (int j = 0; j < 3; j++) second_difference(&d[0][j], &d[1][j], &d[2][j], &to->x[j]);
+}
+
+/* Δd dx² of one particle, whose record kernel_records made. */
+SIMD_INLINE real quadratic_laplacian(const real *r, const second_differences *d) {
+    vec4 across = {0}, along_z = {0}, weight_z, weight_y;
+    SIMD_UNROLL
+    for (int i = 0; i < 3; i++) {
+        vec4_add_scaled(&across, &d->x[i], r[G2P_WY + i]);
+        vec4_add_scaled(&along_z, &d->z[i], r[G2P_WX + i]);
+    }
+    SIMD_UNROLL
+    for (int i = 0; i < 3; i++) vec4_add_scaled(&across, &d->y[i], r[G2P_WX + i]);
+    vec4_load(&weight_z, r + G2P_WZ);
+    vec4_load(&weight_y, r + G2P_WY);
+    vec4 total = across * weight_z + along_z * weight_y;
+    return vec4_sum(&total);
+}
+
+/* Of particles that share a first node. */
+SIMD_INLINE int quadratic_laplacian_run(const real *records, int p, int count, real scale, const real *window, real *out) {
+    real node = records[p * RECORD + G2P_NODE], shift = records[p * RECORD + G2P_SHIFT];
+    second_differences d;
+    differ_nodes(window + (int)node, (int)shift, &d);
+    for (; p < count && records[p * RECORD + G2P_NODE] == node && records[p * RECORD + G2P_SHIFT] == shift; p++)
+        out[p] = quadratic_laplacian(records + p * RECORD, &d) * scale;
+    return p;
+}
+
+/* A cubic kernel's N'' runs from (1, −2, 1, 0), where its first node's cell begins, to (0, 1, −2, 1), where that ends. */
+SIMD_INLINE void cubic_curve(const vec4 rows[4], real t, vec4 *out) {
+    vec4 end;
+    second_difference(&rows[0], &rows[1], &rows[2], out);
+    second_difference(&rows[1], &rows[2], &rows[3], &end);
+    end -= *out;
+    vec4_add_scaled(out, &end, t);
+}
+
+/* Slots of a particle's record for it. */
+enum { CURVE_WX = 0, CURVE_WY = 4, CURVE_WZ = 8, CURVE_T = 12 /* how far it is in its cell */, CURVE_NODE = 15 };
+
+SIMD_INLINE void curve_records(const tile_work *w) {
     for (int k = 0; k < w->tile->pack_count; k++)
         for (int part = 0; part < PACK_PARTS; part++) {
-            kernel_place at = kernel_locate(kernel, vec3v_load(&w->state->fields[FIELD_POSITION], w->tile->first_pack + k, part));
-            vec columns[RECORD] = {vec_all(0)};
-            kernel_weights(kernel, at.u.x, columns + G2P_WX);
-            kernel_weights(kernel, at.u.y, columns + G2P_WY);
-            kernel_weights(kernel, at.u.z, columns + G2P_WZ);
-            kernel_curvatures(kernel, at.u.x, columns + CURVE);
-            kernel_curvatures(kernel, at.u.y, columns + CURVE + 4);
-            kernel_curvatures(kernel, at.u.z, columns + CURVE + 8);
-            columns[G2P_NODE] = window_index(at.base);
-            records_store(w->scratch->records, k * PACK + part * VEC_LANES, 0, columns, RECORD);
+            kernel_place at = kernel_locate(KERNEL_CUBIC, vec3v_load(&w->state->fields[FIELD_POSITION], w->tile->first_pack + k, part));
+            vec columns[CURVE_NODE + 1];
+            cubic_weights(at.u.x, columns + CURVE_WX);
+            cubic_weights(at.u.y, columns + CURVE_WY);
+            cubic_weights(at.u.z, columns + CURVE_WZ);
+            columns[CURVE_T] = at.u.x - 1, columns[CURVE_T + 1] = at.u.y - 1, columns[CURVE_T + 2] = at.u.z - 1;
+            columns[CURVE_NODE] = window_index(at.base);
+            records_store(w->scratch->records, k * PACK + part * VEC_LANES, 0, columns, CURVE_NODE + 1);
         }
 }
 
-/* Δd at each particle from the nodal damage: N'' of one axis times N of the others, by separable sums, y first. A quadratic kernel's N'' are
- * the same everywhere: where momentum has it too, `weighed`, the gather's own records hold all that is needed. */
-SIMD_INLINE void gather_laplacian(const tile_work *w, kernel_kind kernel, bool weighed, const real *window) {
-    static const real everywhere[8] = {1, -2, 1, 0, 1, -2, 1, 0}, along_z[2][4] = {{1, -2, 1, 0}, {0, 1, -2, 1}}; /* by the shift within the row */
-    real scale = (real)(1 / (w->state->definition.dx * w->state->definition.dx));
-    int nodes = kernel == KERNEL_QUADRATIC ? 3 : 4;
-    if (!weighed) curve_records(w, kernel);
-    for (int p = 0; p < w->tile->count; p++) {
-        const real *r = w->scratch->records + p * RECORD, *first = window + (int)r[G2P_NODE], *curve = weighed ? everywhere : r + CURVE;
-        vec4 plain = {0}, curved = {0}, bend, weight; /* plain, curved: what multiplies N'' and N along z */
-        for (int i = 0; i < nodes; i++) {
-            vec4 sum = {0}, bent = {0};
-            for (int j = 0; j < nodes; j++) {
-                vec4 d;
-                vec4_load(&d, first + i * STRIDE_X + j * STRIDE_Y);
-                vec4_add_scaled(&sum, &d, r[G2P_WY + j]);
-                vec4_add_scaled(&bent, &d, curve[4 + j]);
-            }
-            vec4_add_scaled(&plain, &sum, r[G2P_WX + i]);
-            vec4_add_scaled(&curved, &sum, curve[i]);
-            vec4_add_scaled(&curved, &bent, r[G2P_WX + i]);
-        }
-        vec4_load(&bend, weighed ? along_z[(int)r[G2P_SHIFT]] : curve + 8);
-        vec4_load(&weight, r + G2P_WZ);
-        vec4 total = plain * bend + curved * weight;
-        w->scratch->laplacian[p] = ((total[0] + total[1]) + (total[2] + total[3])) * scale;
+SIMD_INLINE real cubic_laplacian(const real *r, const real *window) {
+    const real *first = window + (int)r[CURVE_NODE];
+    vec4 sum[4], plain = {0}, curved, along_y = {0}, weight, bend = {1, -2, 1, 0};
+    const vec4 slope = {-1, 3, -3, 1};
+    SIMD_UNROLL
+    for (int i = 0; i < 4; i++) {
+        vec4 d[4], curve;
+        SIMD_UNROLL
+        for (int j = 0; j < 4; j++) vec4_load(&d[j], first + i * STRIDE_X + j * STRIDE_Y);
+        sum[i] = d[0] * r[CURVE_WY];
+        SIMD_UNROLL
+        for (int j = 1; j < 4; j++) vec4_add_scaled(&sum[i], &d[j], r[CURVE_WY + j]);
+        cubic_curve(d, r[CURVE_T + 1], &curve);
+        vec4_add_scaled(&plain, &sum[i], r[CURVE_WX + i]);
+        vec4_add_scaled(&along_y, &curve, r[CURVE_WX + i]);
     }
-    for (int p = w->tile->count; p < w->tile->pack_count * PACK; p++) w->scratch->laplacian[p] = 0;
+    cubic_curve(sum, r[CURVE_T], &curved);
+    curved += along_y;
+    vec4_add_scaled(&bend, &slope, r[CURVE_T + 2]);
+    vec4_load(&weight, r + CURVE_WZ);
+    vec4 total = plain * bend + curved * weight; /* what multiplies N'' and N along z */
+    return vec4_sum(&total);
+}
+
+/* Δd at each particle from the nodal damage: N'' of one axis times N of the others. `weighed`: the gather's own records hold a quadratic kernel's
+ * weights already. */
+SIMD_INLINE void gather_laplacian(const tile_work *w, kernel_kind kernel, bool weighed, const real *window) {
+    real scale = (real)(1 / (w->state->definition.dx * w->state->definition.dx)), *records = w->scratch->records, *out = w->scratch->laplacian;
+    int count = w->tile->count;
+    if (kernel == KERNEL_QUADRATIC) {
+        if (!weighed) kernel_records(w->state, w->tile, 0, w->tile->pack_count, records, kernel);
+        for (int p = 0; p < count;) p = quadratic_laplacian_run(records, p, count, scale, window, out);
+    } else {
+        curve_records(w);
+        for (int p = 0; p < count; p++) out[p] = cubic_laplacian(records + p * RECORD, window) * scale;
+    }
+    for (int p = count; p < w->tile->pack_count * PACK; p++) out[p] = 0;
 }
 
 /* What of L the particle carries on as C (METHOD.md §3): all of it, its skew part and a share of the rest, or nothing. */

@@ -18,14 +18,25 @@ typedef struct stretch3v {
 } stretch3v;
 
 /* b = F Fᵀ gives the axes. Its eigenvalues would lose stretches below √ε of the largest one; |Fᵀ n|² keeps them to ε. */
+SIMD_INLINE void mat3v_stretch_each(const mat3v *F, const sym3v *b, stretch3v *out, int count) {
+    eigen3v axes[EIGEN_TOGETHER];
+    sym3v_eigen_each(b, axes, count);
+    SIMD_UNROLL
+    for (int i = 0; i < count; i++) {
+        const eigen3v *e = &axes[i];
+        stretch3v s = {.first = e->first, .second = e->second, .third = e->third};
+        s.pulled_first = mat3v_transpose_times(F[i], e->first);
+        s.pulled_second = mat3v_transpose_times(F[i], e->second);
+        s.pulled_third = mat3v_transpose_times(F[i], e->third);
+        s.square = (vec3v){vec3v_dot(s.pulled_first, s.pulled_first), vec3v_dot(s.pulled_second, s.pulled_second),
+                           vec3v_dot(s.pulled_third, s.pulled_third)};
+        out[i] = s;
+    }
+}
+
 SIMD_INLINE stretch3v mat3v_stretch(mat3v F, sym3v b) {
-    eigen3v e = sym3v_eigen(b);
-    stretch3v s = {.first = e.first, .second = e.second, .third = e.third};
-    s.pulled_first = mat3v_transpose_times(F, e.first);
-    s.pulled_second = mat3v_transpose_times(F, e.second);
-    s.pulled_third = mat3v_transpose_times(F, e.third);
-    s.square = (vec3v){vec3v_dot(s.pulled_first, s.pulled_first), vec3v_dot(s.pulled_second, s.pulled_second),
-                       vec3v_dot(s.pulled_third, s.pulled_third)};
+    stretch3v s;
+    mat3v_stretch_each(&F, &b, &s, 1);
     return s;
 }
 

@@ -221,28 +221,74 @@ SIMD_INLINE vec3v sym3v_null_axis(sym3v m) {
  * at least √3 from both others, so its vector is as good as A's own digits, and a plane rotation parts the other two. So repeated and nearly
  * repeated eigenvalues are exact, where closed forms for all three and non-symmetric solvers fail (FACTS.md §1). Nothing iterates: a third of the
  * operations of cyclic Jacobi, and a chain of ten divisions and roots instead of 48. */
-SIMD_INLINE eigen3v sym3v_eigen(sym3v a) {
-    vec mean = (a.xx + a.yy + a.zz) * (real)(1.0 / 3.0), tiny = vec_all((real)EIGEN_TINY);
+typedef struct eigen_work {
+    sym3v B;
+    vec mean, scale;
+    vec3v n, u, w;
+    vec uu, ww, uw; /* B in the plane of u and w */
+} eigen_work;
+
+SIMD_INLINE void eigen_scale(sym3v a, eigen_work *e) {
+    vec mean = (a.xx + a.yy + a.zz) * (real)(1.0 / 3.0);
     sym3v B = {a.xx - mean, a.yy - mean, a.zz - mean, a.xy, a.yz, a.xz};
-    vec scale = vec_sqrt(sym3v_square_sum(B) * (real)(1.0 / 6.0)), inverse = 1 / vec_max(scale, tiny);
-    B = (sym3v){B.xx * inverse, B.yy * inverse, B.zz * inverse, B.xy * inverse, B.yz * inverse, B.xz * inverse};
+    vec scale = vec_sqrt(sym3v_square_sum(B) * (real)(1.0 / 6.0)), inverse = 1 / vec_max(scale, vec_all((real)EIGEN_TINY));
+    e->B = (sym3v){B.xx * inverse, B.yy * inverse, B.zz * inverse, B.xy * inverse, B.yz * inverse, B.xz * inverse};
+    e->mean = mean, e->scale = scale;
+}
+
+SIMD_INLINE vec eigen_root(sym3v B) {
     vec minor_x = vec_fma(B.yy, B.zz, -(B.yz * B.yz)), minor_y = vec_fma(B.xz, B.yz, -(B.xy * B.zz)), minor_z = vec_fma(B.xy, B.yz, -(B.xz * B.yy));
     vec half = (real)0.5 * vec_fma(B.xx, minor_x, vec_fma(B.xy, minor_y, B.xz * minor_z));
-    vec root = largest_root(vec_min(vec_abs(half), vec_all(1))), alone = vec_select(half < 0, -root, root);
-    vec3v n = sym3v_null_axis((sym3v){B.xx - alone, B.yy - alone, B.zz - alone, B.xy, B.yz, B.xz}), u, w;
-    vec3v_frame(n, &u, &w);
-    vec3v Bu = sym3v_times(B, u), Bw = sym3v_times(B, w);
-    vec uu = vec3v_dot(u, Bu), ww = vec3v_dot(w, Bw), uw = vec3v_dot(w, Bu);
-    /* t = tan of the smaller angle that makes uw zero, written without a division by it, so that a zero breaks nothing. */
-    vec apart = ww - uu, twice = uw + uw;
+    vec root = largest_root(vec_min(vec_abs(half), vec_all(1)));
+    return vec_select(half < 0, -root, root);
+}
+
+SIMD_INLINE void eigen_axis(eigen_work *e) {
+    sym3v B = e->B;
+    vec alone = eigen_root(B);
+    e->n = sym3v_null_axis((sym3v){B.xx - alone, B.yy - alone, B.zz - alone, B.xy, B.yz, B.xz});
+}
+
+SIMD_INLINE void eigen_plane(eigen_work *e) {
+    vec3v_frame(e->n, &e->u, &e->w);
+    vec3v Bu = sym3v_times(e->B, e->u), Bw = sym3v_times(e->B, e->w);
+    e->uu = vec3v_dot(e->u, Bu), e->ww = vec3v_dot(e->w, Bw), e->uw = vec3v_dot(e->w, Bu);
+}
+
+/* t = tan of the smaller angle that makes uw zero, written without a division by it, so that a zero breaks nothing. */
+SIMD_INLINE eigen3v eigen_turn(const eigen_work *e) {
+    vec apart = e->ww - e->uu, twice = e->uw + e->uw;
     vec down = vec_fma(apart, apart, twice * twice);
-    vec t = vec_select(apart < 0, -twice, twice) / vec_max(vec_abs(apart) + vec_sqrt(down), tiny);
-    vec c = 1 / vec_sqrt(vec_fma(t, t, vec_all(1))), s = t * c, shift = t * uw;
+    vec t = vec_select(apart < 0, -twice, twice) / vec_max(vec_abs(apart) + vec_sqrt(down), vec_all((real)EIGEN_TINY));
+    vec c = 1 / vec_sqrt(vec_fma(t, t, vec_all(1))), s = t * c, shift = t * e->uw;
+    vec3v u = e->u, w = e->w;
     return (eigen3v){
-        {vec_fma(scale, -(uu + ww), mean), vec_fma(scale, uu - shift, mean), vec_fma(scale, ww + shift, mean)},
-        n,
+        {vec_fma(e->scale, -(e->uu + e->ww), e->mean), vec_fma(e->scale, e->uu - shift, e->mean), vec_fma(e->scale, e->ww + shift, e->mean)},
+        e->n,
         {vec_fma(c, u.x, -(s * w.x)), vec_fma(c, u.y, -(s * w.y)), vec_fma(c, u.z, -(s * w.z))},
         {vec_fma(s, u.x, c * w.x), vec_fma(s, u.y, c * w.y), vec_fma(s, u.z, c * w.z)}};
+}
+
+/* How many vectors of tensors are best decomposed side by side. The chain of divisions and roots is longer than a processor sees ahead, so a second one, step by
+ * step, takes place in its shadow. */
+enum { EIGEN_TOGETHER = VEC_BYTES == 64 ? 1 : 2 };
+
+SIMD_INLINE void sym3v_eigen_each(const sym3v *a, eigen3v *out, int count) {
+    eigen_work e[EIGEN_TOGETHER];
+    SIMD_UNROLL
+    for (int i = 0; i < count; i++) eigen_scale(a[i], &e[i]);
+    SIMD_UNROLL
+    for (int i = 0; i < count; i++) eigen_axis(&e[i]);
+    SIMD_UNROLL
+    for (int i = 0; i < count; i++) eigen_plane(&e[i]);
+    SIMD_UNROLL
+    for (int i = 0; i < count; i++) out[i] = eigen_turn(&e[i]);
+}
+
+SIMD_INLINE eigen3v sym3v_eigen(sym3v a) {
+    eigen3v e;
+    sym3v_eigen_each(&a, &e, 1);
+    return e;
 }
 
 #endif

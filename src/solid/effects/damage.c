@@ -55,20 +55,24 @@ static void degrade(tile_work *w) {
     damage_degrade(w, w->constants[RESIDUAL]);
 }
 
-/* A in the axes n_i of the stress: I + Σ α (R a)(R a)ᵀ, R a = Σ (n_i · F a)/s_i n_i. */
-SIMD_INLINE void add_structure(const tile_work *w, int32_t pack, int part, int field, real alpha, mat3v F, const eigen3v *e, vec3v inverse_stretch, sym3v *A) {
+/* Adds one family's α (F a · n_i)(F a · n_j): over the stretches s_i s_j it is its part of A in the axes n_i of the stress. */
+SIMD_INLINE void add_structure(const tile_work *w, int32_t pack, int part, int field, real alpha, mat3v F, const eigen3v *e, sym3v *S) {
     if (alpha == 0 || field < 0) return;
     vec3v f = mat3v_times(F, vec3v_load(&w->state->fields[field], pack, part));
-    vec x = vec3v_dot(e->first, f) * inverse_stretch.x, y = vec3v_dot(e->second, f) * inverse_stretch.y, z = vec3v_dot(e->third, f) * inverse_stretch.z;
+    vec x = vec3v_dot(e->first, f), y = vec3v_dot(e->second, f), z = vec3v_dot(e->third, f);
     vec alpha_x = alpha * x, alpha_y = alpha * y, alpha_z = alpha * z;
-    *A = (sym3v){vec_fma(alpha_x, x, A->xx), vec_fma(alpha_y, y, A->yy), vec_fma(alpha_z, z, A->zz),
-                 vec_fma(alpha_x, y, A->xy), vec_fma(alpha_y, z, A->yz), vec_fma(alpha_x, z, A->xz)};
+    *S = (sym3v){vec_fma(alpha_x, x, S->xx), vec_fma(alpha_y, y, S->yy), vec_fma(alpha_z, z, S->zz),
+                 vec_fma(alpha_x, y, S->xy), vec_fma(alpha_y, z, S->yz), vec_fma(alpha_x, z, S->xz)};
 }
 
-/* tr(A S A S) = Σ_ij s_i s_j A_ij² in the axes of S: no cancellation, never negative. */
-SIMD_INLINE vec driving_form(sym3v A, vec3v s) {
-    vec mixed = vec_fma(s.x * s.y, A.xy * A.xy, vec_fma(s.y * s.z, A.yz * A.yz, s.x * s.z * (A.xz * A.xz)));
-    vec x = s.x * A.xx, y = s.y * A.yy, z = s.z * A.zz;
+/* tr(A S A S) = Σ_ij s_i s_j A_ij² in the axes of S, A = I + `structure` over the stretches: no cancellation, never negative, and of the stretches only
+ * squares. */
+SIMD_INLINE vec driving_form(sym3v structure, vec3v inverse_square, vec3v s) {
+    vec3v i = inverse_square;
+    vec xy = (structure.xy * i.x) * (structure.xy * i.y), yz = (structure.yz * i.y) * (structure.yz * i.z),
+        xz = (structure.xz * i.x) * (structure.xz * i.z);
+    vec mixed = vec_fma(s.x * s.y, xy, vec_fma(s.y * s.z, yz, s.x * s.z * xz));
+    vec x = vec_fma(s.x, structure.xx * i.x, s.x), y = vec_fma(s.y, structure.yy * i.y, s.y), z = vec_fma(s.z, structure.zz * i.z, s.z);
     return vec_fma(x, x, vec_fma(y, y, vec_fma(z, z, mixed + mixed)));
 }
 
@@ -101,22 +105,28 @@ SIMD_INLINE vec square_bound_corotated(const real *c, sym3v b, vec pressure) {
     return norm * norm;
 }
 
+/* What decides whether a particle's stress must be looked at. */
+typedef struct strained {
+    sym3v b;
+    vec pressure, inverse_J;
+    vec_mask open;
+} strained;
+
 /* Φ σc² of the particles whose bound says that it could matter. */
-SIMD_INLINE vec driving_stress(const tile_work *w, int32_t pack, int part, mat3v F, sym3v b, vec J, vec pressure) {
+SIMD_INLINE vec driving_stress(const tile_work *w, int32_t pack, int part, const strained *at, const eigen3v *e) {
     const real *c = w->constants;
-    eigen3v e = sym3v_eigen(b);
-    vec tiny = vec_all((real)1e-20), inverse_J = 1 / vec_max(J, vec_all((real)1e-3));
-    vec3v tau = c[COROTATED] != 0 ? principal_corotated(c, e.value, pressure) : principal_closed_form(c, e.value, pressure);
-    vec3v positive = {vec_max(tau.x * inverse_J, vec_all(0)), vec_max(tau.y * inverse_J, vec_all(0)),
-                      vec_max(tau.z * inverse_J, vec_all(0))};
-    sym3v A = {vec_all(1), vec_all(1), vec_all(1), vec_all(0), vec_all(0), vec_all(0)};
+    vec zero = vec_all(0), tiny = vec_all((real)1e-20);
+    vec3v tau = c[COROTATED] != 0 ? principal_corotated(c, e->value, at->pressure) : principal_closed_form(c, e->value, at->pressure);
+    vec3v positive = {vec_max(tau.x * at->inverse_J, zero), vec_max(tau.y * at->inverse_J, zero), vec_max(tau.z * at->inverse_J, zero)};
+    sym3v structure = {zero, zero, zero, zero, zero, zero};
+    vec3v inverse = {zero, zero, zero};
     if (c[ALPHA1] != 0 || c[ALPHA2] != 0) {
-        vec3v inverse = {1 / vec_sqrt(vec_max(e.value.x, tiny)), 1 / vec_sqrt(vec_max(e.value.y, tiny)),
-                         1 / vec_sqrt(vec_max(e.value.z, tiny))};
-        add_structure(w, pack, part, w->state->fibre_field, c[ALPHA1], F, &e, inverse, &A);
-        add_structure(w, pack, part, w->state->fibre2_field, c[ALPHA2], F, &e, inverse, &A);
+        mat3v F = mat3v_load(&w->state->fields[FIELD_DEFORMATION], pack, part);
+        inverse = (vec3v){1 / vec_max(e->value.x, tiny), 1 / vec_max(e->value.y, tiny), 1 / vec_max(e->value.z, tiny)};
+        add_structure(w, pack, part, w->state->fibre_field, c[ALPHA1], F, e, &structure);
+        add_structure(w, pack, part, w->state->fibre2_field, c[ALPHA2], F, e, &structure);
     }
-    return driving_form(A, positive);
+    return driving_form(structure, inverse, positive);
 }
 
 /* Stress over σc, squared, by what this particle's E and σc are to its material's. */
@@ -128,22 +138,40 @@ SIMD_INLINE vec relative_load(const tile_work *w, int32_t pack, int part, vec va
     return value * ratio * ratio;
 }
 
-/* The history's new value from this step's F. */
-SIMD_INLINE vec history(const tile_work *w, int32_t pack, int part, vec d, vec H) {
+SIMD_INLINE strained strained_at(const tile_work *w, int32_t pack, int part, vec d, vec H) {
     const real *c = w->constants;
     mat3v F = mat3v_load(&w->state->fields[FIELD_DEFORMATION], pack, part);
     vec J = mat3v_determinant(F);
-    sym3v b = mat3v_gram(F);
+    strained at = {.b = mat3v_gram(F)};
     bool corotated = c[COROTATED] != 0;
-    vec pressure = J * vec_fma(vec_all(c[LAMBDA]), J - 1, vec_all(corotated ? 0 : -c[MU]));
-    vec inverse_J = 1 / vec_max(J, vec_all((real)1e-3));
-    vec square = corotated ? square_bound_corotated(c, b, pressure) : square_closed_form(c, b, pressure);
-    vec bound = relative_load(w, pack, part, square * inverse_J * inverse_J * c[CRITICAL_INVERSE2]);
-    vec_mask open = (bound > BOUND_MARGIN * (1 + H * (1 / c[ZETA]))) & (J > 0) & (d < 1);
-    if (!vec_any(open)) return H;
-    vec phi = relative_load(w, pack, part, driving_stress(w, pack, part, F, b, J, pressure) * c[CRITICAL_INVERSE2]);
-    vec raised = vec_min(vec_max(c[ZETA] * (phi - 1), H), vec_all(DAMAGE_DRIVING_LIMIT));
-    return vec_select(open, raised, H);
+    at.pressure = J * vec_fma(vec_all(c[LAMBDA]), J - 1, vec_all(corotated ? 0 : -c[MU]));
+    at.inverse_J = 1 / vec_max(J, vec_all((real)1e-3));
+    vec square = corotated ? square_bound_corotated(c, at.b, at.pressure) : square_closed_form(c, at.b, at.pressure);
+    vec bound = relative_load(w, pack, part, square * at.inverse_J * at.inverse_J * c[CRITICAL_INVERSE2]);
+    at.open = (bound > BOUND_MARGIN * (1 + H * (1 / c[ZETA]))) & (J > 0) & (d < 1);
+    return at;
+}
+
+/* The histories' new values from this step's F, of EIGEN_TOGETHER parts of a pack. */
+SIMD_INLINE void raise_histories(const tile_work *w, int32_t pack, int part, const vec *d, vec *H) {
+    const real *c = w->constants;
+    strained at[EIGEN_TOGETHER];
+    sym3v b[EIGEN_TOGETHER];
+    eigen3v e[EIGEN_TOGETHER];
+    vec_mask open = vec_all(0) != 0;
+    SIMD_UNROLL
+    for (int i = 0; i < EIGEN_TOGETHER; i++) {
+        at[i] = strained_at(w, pack, part + i, d[i], H[i]);
+        b[i] = at[i].b, open |= at[i].open;
+    }
+    if (!vec_any(open)) return;
+    sym3v_eigen_each(b, e, EIGEN_TOGETHER);
+    SIMD_UNROLL
+    for (int i = 0; i < EIGEN_TOGETHER; i++) {
+        vec phi = relative_load(w, pack, part + i, driving_stress(w, pack, part + i, &at[i], &e[i]) * c[CRITICAL_INVERSE2]);
+        vec raised = vec_min(vec_max(c[ZETA] * (phi - 1), H[i]), vec_all(DAMAGE_DRIVING_LIMIT));
+        H[i] = vec_select(at[i].open, raised, H[i]);
+    }
 }
 
 /* 1/Δt of the explicit update. It relaxes d towards e = (H + l0² Δd)/(1 + H) at the rate (1 + H + bound)/η and overshoots where
@@ -164,14 +192,35 @@ static void update_implicit(tile_work *w) {
     const solid_field *histories = &w->state->fields[w->state->history_field];
     real rate = w->state->implicit_materials[w->tile->material].eta / w->dt;
     for (int k = 0; k < w->tile->pack_count; k++)
-        for (int part = 0; part < PACK_PARTS; part++) {
+        for (int part = 0; part < PACK_PARTS; part += EIGEN_TOGETHER) {
             int32_t pack = w->tile->first_pack + k;
-            vec d = vec_load(field_at(damage, pack, 0, part)), H = vec_load(field_at(histories, pack, 0, part));
-            vec spread = vec_load(scratch_at(w->scratch->laplacian, 1, k, 0, part));
-            d = implicit_damage(d, H, spread, scaled(w->state, w->state->viscosity_scale, pack, part, vec_all(rate)));
-            vec_store(field_at(damage, pack, 0, part), d);
-            vec_store(field_at(histories, pack, 0, part), history(w, pack, part, d, H));
+            vec d[EIGEN_TOGETHER], H[EIGEN_TOGETHER];
+            SIMD_UNROLL
+            for (int i = 0; i < EIGEN_TOGETHER; i++) {
+                H[i] = vec_load(field_at(histories, pack, 0, part + i));
+                vec spread = vec_load(scratch_at(w->scratch->laplacian, 1, k, 0, part + i));
+                vec pace = scaled(w->state, w->state->viscosity_scale, pack, part + i, vec_all(rate));
+                d[i] = implicit_damage(vec_load(field_at(damage, pack, 0, part + i)), H[i], spread, pace);
+                vec_store(field_at(damage, pack, 0, part + i), d[i]);
+            }
+            raise_histories(w, pack, part, d, H);
+            SIMD_UNROLL
+            for (int i = 0; i < EIGEN_TOGETHER; i++) vec_store(field_at(histories, pack, 0, part + i), H[i]);
         }
+}
+
+/* One explicit step of d; its limit where particles are not padding. */
+SIMD_INLINE vec relax(const tile_work *w, int k, int part, vec d, vec H) {
+    const solid *s = w->state;
+    const real *c = w->constants;
+    int32_t pack = w->tile->first_pack + k;
+    vec spread = c[LENGTH2] * vec_load(scratch_at(w->scratch->laplacian, 1, k, 0, part));
+    vec growth = vec_max(vec_fma(1 - d, H, spread - d), vec_all(0));
+    vec pace = scaled_down(s, s->viscosity_scale, pack, part, vec_all(1));
+    d = vec_min(vec_fma(w->dt * c[ETA_INVERSE] * pace, growth, d), vec_all(1));
+    vec_store(field_at(&s->fields[s->damage_field], pack, 0, part), d);
+    vec alive = vec_load(field_at(&s->fields[FIELD_VOLUME], pack, 0, part));
+    return vec_select(alive > 0, relaxation_limit(c, d, H, spread) * pace, vec_all(0));
 }
 
 static void update(tile_work *w) {
@@ -183,21 +232,22 @@ static void update(tile_work *w) {
         update_implicit(w);
         return;
     }
-    real rate = w->dt * c[ETA_INVERSE];
     vec limit = vec_all(0);
     for (int k = 0; k < w->tile->pack_count; k++)
-        for (int part = 0; part < PACK_PARTS; part++) {
+        for (int part = 0; part < PACK_PARTS; part += EIGEN_TOGETHER) {
             int32_t pack = w->tile->first_pack + k;
-            vec d = vec_load(field_at(damage, pack, 0, part)), H = vec_load(field_at(histories, pack, 0, part));
-            H = history(w, pack, part, d, c[INSTANT] != 0 ? vec_all(0) : H);
-            vec spread = c[LENGTH2] * vec_load(scratch_at(w->scratch->laplacian, 1, k, 0, part));
-            vec growth = vec_max(vec_fma(1 - d, H, spread - d), vec_all(0));
-            vec pace = scaled_down(w->state, w->state->viscosity_scale, pack, part, vec_all(1));
-            d = vec_min(vec_fma(rate * pace, growth, d), vec_all(1));
-            vec_store(field_at(damage, pack, 0, part), d);
-            vec_store(field_at(histories, pack, 0, part), H);
-            vec alive = vec_load(field_at(&w->state->fields[FIELD_VOLUME], pack, 0, part));
-            limit = vec_max(vec_select(alive > 0, relaxation_limit(c, d, H, spread) * pace, vec_all(0)), limit);
+            vec d[EIGEN_TOGETHER], H[EIGEN_TOGETHER];
+            SIMD_UNROLL
+            for (int i = 0; i < EIGEN_TOGETHER; i++) {
+                d[i] = vec_load(field_at(damage, pack, 0, part + i));
+                H[i] = c[INSTANT] != 0 ? vec_all(0) : vec_load(field_at(histories, pack, 0, part + i));
+            }
+            raise_histories(w, pack, part, d, H);
+            SIMD_UNROLL
+            for (int i = 0; i < EIGEN_TOGETHER; i++) {
+                vec_store(field_at(histories, pack, 0, part + i), H[i]);
+                limit = vec_max(relax(w, k, part + i, d[i], H[i]), limit);
+            }
         }
     w->result->limit[w->effect] = vec_largest(limit);
 }

@@ -56,11 +56,10 @@ SIMD_INLINE void add_dyad(mat3v *F, vec factor, vec3v n, vec3v p) {
 }
 
 /* Brings F back to the surface; the increase of plastic strain is returned. Lanes that do not yield keep F's bits, and give 0. */
-SIMD_INLINE vec return_to_surface(mat3v *F, sym3v b, vec limit, vec hardening) {
-    stretch3v s = mat3v_stretch(*F, b);
+SIMD_INLINE vec return_to_surface(mat3v *F, const stretch3v *s, vec limit, vec hardening) {
     vec half = vec_all((real)0.5), least = vec_all((real)(STRETCH_LEAST * STRETCH_LEAST));
-    vec3v strain = {half * vec_log(vec_max(s.square.x, least)), half * vec_log(vec_max(s.square.y, least)),
-                    half * vec_log(vec_max(s.square.z, least))};
+    vec3v strain = {half * vec_log(vec_max(s->square.x, least)), half * vec_log(vec_max(s->square.y, least)),
+                    half * vec_log(vec_max(s->square.z, least))};
     vec mean = (real)(1.0 / 3) * (strain.x + strain.y + strain.z);
     vec3v deviator = {strain.x - mean, strain.y - mean, strain.z - mean};
     vec norm = vec_sqrt(vec3v_dot(deviator, deviator)), excess = norm - limit;
@@ -68,30 +67,47 @@ SIMD_INLINE vec return_to_surface(mat3v *F, sym3v b, vec limit, vec hardening) {
     /* After the flow Δp: norm − Δp = limit + h Δp. */
     vec flow = excess * (1 / (1 + hardening)), share = -flow / norm;
     mat3v moved = *F;
-    add_dyad(&moved, vec_expm1(share * deviator.x), s.first, s.pulled_first);
-    add_dyad(&moved, vec_expm1(share * deviator.y), s.second, s.pulled_second);
-    add_dyad(&moved, vec_expm1(share * deviator.z), s.third, s.pulled_third);
+    add_dyad(&moved, vec_expm1(share * deviator.x), s->first, s->pulled_first);
+    add_dyad(&moved, vec_expm1(share * deviator.y), s->second, s->pulled_second);
+    add_dyad(&moved, vec_expm1(share * deviator.z), s->third, s->pulled_third);
     *F = (mat3v){vec_select(yields, moved.xx, F->xx), vec_select(yields, moved.xy, F->xy), vec_select(yields, moved.xz, F->xz),
                  vec_select(yields, moved.yx, F->yx), vec_select(yields, moved.yy, F->yy), vec_select(yields, moved.yz, F->yz),
                  vec_select(yields, moved.zx, F->zx), vec_select(yields, moved.zy, F->zy), vec_select(yields, moved.zz, F->zz)};
     return vec_select(yields, flow, vec_all(0));
 }
 
-static void update(tile_work *w) {
-    const solid_field *F_field = &w->state->fields[FIELD_DEFORMATION], *strains = plastic_strain(w->state);
+/* EIGEN_TOGETHER parts of a pack. */
+SIMD_INLINE void flow_parts(const tile_work *w, const solid_field *strains, int32_t pack, int part) {
+    const solid_field *F_field = &w->state->fields[FIELD_DEFORMATION];
     real yield = w->constants[YIELD], hardening = w->constants[HARDENING];
+    mat3v F[EIGEN_TOGETHER];
+    sym3v b[EIGEN_TOGETHER];
+    stretch3v stretch[EIGEN_TOGETHER];
+    vec p[EIGEN_TOGETHER], limit[EIGEN_TOGETHER], softness[EIGEN_TOGETHER];
+    vec_mask open = vec_all(0) != 0;
+    SIMD_UNROLL
+    for (int i = 0; i < EIGEN_TOGETHER; i++) {
+        F[i] = mat3v_load(F_field, pack, part + i);
+        b[i] = mat3v_gram(F[i]);
+        p[i] = vec_load(field_at(strains, pack, 0, part + i));
+        softness[i] = scaled_down(w->state, w->state->stiffness_scale, pack, part + i, vec_all(1));
+        limit[i] = (yield + hardening * p[i]) * softness[i];
+        open |= may_yield(b[i], limit[i]);
+    }
+    if (!vec_any(open)) return;
+    mat3v_stretch_each(F, b, stretch, EIGEN_TOGETHER);
+    SIMD_UNROLL
+    for (int i = 0; i < EIGEN_TOGETHER; i++) {
+        vec flow = return_to_surface(&F[i], &stretch[i], limit[i], hardening * softness[i]);
+        mat3v_store(F_field, pack, part + i, F[i]);
+        vec_store(field_at(strains, pack, 0, part + i), p[i] + flow);
+    }
+}
+
+static void update(tile_work *w) {
+    const solid_field *strains = plastic_strain(w->state);
     for (int k = 0; k < w->tile->pack_count; k++)
-        for (int part = 0; part < PACK_PARTS; part++) {
-            int32_t pack = w->tile->first_pack + k;
-            mat3v F = mat3v_load(F_field, pack, part);
-            sym3v b = mat3v_gram(F);
-            vec p = vec_load(field_at(strains, pack, 0, part)), softness = scaled_down(w->state, w->state->stiffness_scale, pack, part, vec_all(1));
-            vec limit = (yield + hardening * p) * softness;
-            if (!vec_any(may_yield(b, limit))) continue;
-            vec flow = return_to_surface(&F, b, limit, hardening * softness);
-            mat3v_store(F_field, pack, part, F);
-            vec_store(field_at(strains, pack, 0, part), p + flow);
-        }
+        for (int part = 0; part < PACK_PARTS; part += EIGEN_TOGETHER) flow_parts(w, strains, w->tile->first_pack + k, part);
 }
 
 static const parameter parameters[] = {

@@ -191,16 +191,10 @@ SIMD_INLINE void scatter_damage_planes(const real *records, int count, int nodes
         for (int n = 0; n < length[z]; n++) scatter_damage_particle(records + plane[z][n] * RECORD, nodes, window);
 }
 
-/* With the momentum's own kernel its records serve both. */
-SIMD_INLINE void scatter_damage(const tile_work *w, kernel_kind kernel, kernel_kind momentum, real *window) {
-    const real *records = w->scratch->records;
-    int nodes = kernel == KERNEL_QUADRATIC ? 3 : 4;
-    if (kernel != momentum) {
-        damage_records(w, kernel);
-        scatter_damage_planes(records, w->tile->count, nodes, window);
-        return;
-    }
-    for (int p = 0; p < w->tile->count;) p = scatter_damage_run(records, p, w->tile->count, nodes, window);
+/* Of a chunk whose momentum records serve both, the kernel being the same. */
+SIMD_INLINE void scatter_damage_chunk(const tile_work *w, pack_chunk chunk, int nodes, real *window) {
+    int count = chunk.until - chunk.from;
+    for (int p = 0; p < count;) p = scatter_damage_run(w->scratch->records, p, count, nodes, window);
 }
 
 /* Where nothing is damaged, d and Δd are 0 and need no transfer: slots that damaged particles can reach are marked, and blocks at such slots
@@ -291,17 +285,20 @@ SIMD_INLINE void block_to_grid(const transfer_context *t, int32_t block_index, i
         CALL_STAGE(&w, stress);
         real density = (real)s->definition.materials[w.tile->material].density;
         bool takes_part = channel && s->material_damaged[w.tile->material];
-        int packs = takes_part ? TILE_PACKS : CHUNK_PACKS;
-        for (int first = 0; first < w.tile->pack_count; first += packs) {
-            pack_chunk chunk = chunk_at(w.tile, first, packs);
+        for (int first = 0; first < w.tile->pack_count; first += CHUNK_PACKS) {
+            pack_chunk chunk = chunk_at(w.tile, first, CHUNK_PACKS);
             if (s->old_grid) {
                 momentum_records(&w, chunk, kernel, density, 0, false);
                 scatter_momentum(&w, &stream, chunk, nodes, own->old_window);
             }
             momentum_records(&w, chunk, kernel, density, 1, takes_part && kernel == laplacian);
             scatter_momentum(&w, &stream, chunk, nodes, own->window);
+            if (takes_part && kernel == laplacian) scatter_damage_chunk(&w, chunk, nodes, own->damage_window);
         }
-        if (takes_part) scatter_damage(&w, laplacian, kernel, own->damage_window);
+        if (takes_part && kernel != laplacian) {
+            damage_records(&w, laplacian);
+            scatter_damage_planes(w.scratch->records, w.tile->count, laplacian == KERNEL_QUADRATIC ? 3 : 4, own->damage_window);
+        }
     }
     exchange_window(b, own->window, s->grid, NODE, BLOCK_NODES * NODE, wide, true);
     if (s->old_grid) exchange_window(b, own->old_window, s->old_grid, NODE, BLOCK_NODES * NODE, wide, true);
@@ -452,19 +449,26 @@ SIMD_INLINE real cubic_laplacian(const real *r, const real *window) {
     return vec4_sum(&total);
 }
 
-/* Δd at each particle from the nodal damage: N'' of one axis times N of the others. `weighed`: the gather's own records hold a quadratic kernel's
- * weights already. */
-SIMD_INLINE void gather_laplacian(const tile_work *w, kernel_kind kernel, bool weighed, const real *window) {
+/* Δd at a chunk's particles from the nodal damage: N'' of one axis times N of the others. Their records are kernel_records' of the quadratic kernel. */
+SIMD_INLINE void quadratic_laplacians(const tile_work *w, pack_chunk chunk, const real *window) {
+    real scale = (real)(1 / (w->state->definition.dx * w->state->definition.dx)), *out = w->scratch->laplacian + chunk.from;
+    int count = chunk.until - chunk.from, padded = (chunk.end - chunk.first) * PACK;
+    for (int p = 0; p < count;) p = quadratic_laplacian_run(w->scratch->records, p, count, scale, window, out);
+    for (int p = count; p < padded; p++) out[p] = 0;
+}
+
+/* Of a whole tile, whose gather has another kernel. */
+SIMD_INLINE void gather_laplacian(const tile_work *w, kernel_kind kernel, const real *window) {
     real scale = (real)(1 / (w->state->definition.dx * w->state->definition.dx)), *records = w->scratch->records, *out = w->scratch->laplacian;
-    int count = w->tile->count;
+    int count = w->tile->count, packs = w->tile->pack_count;
     if (kernel == KERNEL_QUADRATIC) {
-        if (!weighed) kernel_records(w->state, w->tile, 0, w->tile->pack_count, records, kernel);
-        for (int p = 0; p < count;) p = quadratic_laplacian_run(records, p, count, scale, window, out);
-    } else {
-        curve_records(w);
-        for (int p = 0; p < count; p++) out[p] = cubic_laplacian(records + p * RECORD, window) * scale;
+        kernel_records(w->state, w->tile, 0, packs, records, kernel);
+        quadratic_laplacians(w, chunk_at(w->tile, 0, packs), window);
+        return;
     }
-    for (int p = count; p < w->tile->pack_count * PACK; p++) out[p] = 0;
+    curve_records(w);
+    for (int p = 0; p < count; p++) out[p] = cubic_laplacian(records + p * RECORD, window) * scale;
+    for (int p = count; p < packs * PACK; p++) out[p] = 0;
 }
 
 /* What of L the particle carries on as C (METHOD.md §3): all of it, its skew part and a share of the rest, or nothing. */
@@ -571,17 +575,17 @@ SIMD_INLINE void block_to_particles(const transfer_context *t, int32_t block_ind
     for (int32_t i = b->first_tile; i < b->first_tile + b->tile_count; i++) {
         tile_work w = {.state = s, .tile = &s->tiles[i], .scratch = &own->tile, .result = &s->tile_results[i], .dt = t->dt};
         memset(w.result, 0, sizeof *w.result);
-        bool weighed = damage && kernel == KERNEL_QUADRATIC && laplacian == KERNEL_QUADRATIC;
-        if (weighed) kernel_records(s, w.tile, 0, w.tile->pack_count, w.scratch->records, kernel);
-        if (channel && s->material_damaged[w.tile->material] && !s->material_implicit[w.tile->material])
-            gather_laplacian(&w, laplacian, weighed, own->damage_window);
-        else if (damage)
-            fill(w.scratch->laplacian, w.tile->pack_count * PACK, 0);
-        if (damage && s->material_implicit[w.tile->material]) implicit_gather(&w, weighed, own->implicit_window);
-        int packs = weighed ? TILE_PACKS : CHUNK_PACKS;
+        bool weighed = damage && kernel == KERNEL_QUADRATIC && laplacian == KERNEL_QUADRATIC; /* the gather's records serve damage too */
+        bool solved = damage && s->material_implicit[w.tile->material], takes_part = channel && s->material_damaged[w.tile->material] && !solved;
+        if (takes_part && !weighed) gather_laplacian(&w, laplacian, own->damage_window);
+        else if (solved && !weighed) implicit_gather(&w, false, own->implicit_window);
+        else if (damage && !takes_part && !solved) fill(w.scratch->laplacian, w.tile->pack_count * PACK, 0);
+        int packs = weighed && solved ? TILE_PACKS : CHUNK_PACKS;
         for (int first = 0; first < w.tile->pack_count; first += packs) {
             pack_chunk chunk = chunk_at(w.tile, first, packs);
-            if (!weighed) kernel_records(s, w.tile, chunk.first, chunk.end, w.scratch->records, kernel);
+            kernel_records(s, w.tile, chunk.first, chunk.end, w.scratch->records, kernel);
+            if (takes_part && weighed) quadratic_laplacians(&w, chunk, own->damage_window);
+            if (solved && weighed) implicit_gather(&w, true, own->implicit_window);
             if (s->old_grid) {
                 gather_chunk(&w, &stream, chunk, kernel, own->old_window);
                 keep_old_velocity(&w, chunk);

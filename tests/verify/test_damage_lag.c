@@ -32,7 +32,7 @@ static void update_again(solid *s, const real *d, const real *H, double dt) {
         exchange_window(&s->blocks[b], own->damage_window, s->damage_grid, 1, BLOCK_NODES * DAMAGE_NODE, true, false);
         for (int32_t t = s->blocks[b].first_tile; t < s->blocks[b].first_tile + s->blocks[b].tile_count; t++) {
             tile_work w = {.state = s, .tile = &s->tiles[t], .scratch = &own->tile, .result = &s->tile_results[t], .dt = dt};
-            gather_laplacian(&w, KERNEL_CUBIC, false, own->damage_window);
+            gather_laplacian(&w, KERNEL_CUBIC, own->damage_window);
             CALL_STAGE(&w, update);
         }
     }

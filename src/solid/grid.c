@@ -134,6 +134,7 @@ status grid_build(solid *s, report *r) {
             if (s->blocks[b].neighbour[n] == 0) s->blocks[b].neighbour[n] = order_rank(s, neighbour_key(&s->blocks[b], o));
         }
     s->constraint.mapped = false;
+    s->implicit_known = 0;
     return colours_assign(s, r);
 }
 

@@ -4,7 +4,9 @@
  * where s_i is diffusion l0² Δd at the nodes: s = −V⁻¹ B d, V_i = Σ V_p w_ip, B_ij = Σ V_p l0² ∇Θ_i·∇Θ_j, ∇Θ_i = D⁻¹ w_ip (x_i − x_p), of
  * the nodes' means d_i = Σ V_p w_ip d_p / V_i. Putting the first into the last, with the mean of w s / r lumped to s_i R_i,
  *     (A + B) d = c,   A_i = V_i/R_i,   c_i = A_i m_i,   R_i = (Σ V_p w_ip r_p^(−1/2) / V_i)²,   m_i = Σ V_p w_ip b_p / r_p / V_i.
- * Symmetric, positive definite, diagonally strong: conjugate gradients with Jacobi's preconditioner, matrix-free, from m. Sums over
+ * Symmetric, positive definite, diagonally strong: conjugate gradients with Jacobi's preconditioner, matrix-free, from m + R s of the s that
+ * the last two steps lead to expect: near enough, mostly, that B is applied once, to see that it is. Sorting forgets them, and a frame begins
+ * with a sort, so that a run resumed has the same bits. Sums over
  * nodes are made slot by slot and added in the order of slots, so the iterations have the same bits at any number of threads. Then each
  * particle takes its step (implicit_damage in state.h) with Σ w_ip R_i s_i / Σ w_ip R_i for its diffusion: of nodes that it shares with held
  * particles (r → ∞, R small there), s is what holds those back, a pull of size l0/dx that is not for it. Where r is even this is Σ w_ip s_i.
@@ -22,9 +24,9 @@
 #include <math.h>
 
 /* Planes of nodes, [slot][PLANES][BLOCK_NODES]. The first four begin as one array of nodes, [BLOCK_NODES][NODE], in which particles' sums are made:
- * V √R, V m, V l0², V. IMAGE is B × SEARCH, SPREAD what it adds up to: B × the solution. In the end SPREAD holds R s and COMPLIANCE R, which is
- * all that particles need. */
-enum { DIAGONAL, SOURCE, PRECONDITIONER, VOLUME, SPREAD, RESIDUAL_VECTOR, SEARCH, IMAGE, PLANES = IMPLICIT_PLANES, COMPLIANCE = VOLUME };
+ * V √R, V m, V l0², V. IMAGE is B × SEARCH, SPREAD what it adds up to: B × the solution. In the end SPREAD holds s, BEFORE that of the step
+ * before, and PAIR, [BLOCK_NODES][2], R s and R, which is all that particles need. */
+enum { DIAGONAL, SOURCE, PRECONDITIONER, VOLUME, SPREAD, RESIDUAL_VECTOR, SEARCH, IMAGE, PLANES = IMPLICIT_PLANES, PAIR = SEARCH, BEFORE = SOURCE };
 
 enum { ITERATION_LIMIT = 1000 };
 
@@ -208,9 +210,14 @@ PASSES(cubic, KERNEL_CUBIC)
 
 /* ---- passes over nodes ------------------------------------------------------------------------------------------- */
 
-static void clear_sums(void *context, int64_t slot, int worker) {
+/* Clears the sums; s as it is to be expected, from the last two steps, to RESIDUAL_VECTOR, where nothing is yet. */
+static void begin_slot(void *context, int64_t slot, int worker) {
     (void)worker;
-    memset(plane(context, slot, 0), 0, NODE * BLOCK_NODES * sizeof(real));
+    const solid *s = context;
+    const real *last = plane(s, slot, SPREAD), *before = plane(s, slot, BEFORE);
+    real *expected = plane(s, slot, RESIDUAL_VECTOR);
+    for (int n = 0; n < BLOCK_NODES; n++) expected[n] = s->implicit_known == 0 ? 0 : s->implicit_known == 1 ? last[n] : 2 * last[n] - before[n];
+    memset(plane(s, slot, 0), 0, NODE * BLOCK_NODES * sizeof(real));
 }
 
 /* B's diagonal over Σ V l0² w/dx² where particles are even: D⁻² 3 ∫ w² x² (∫ w²)², distances in dx. A preconditioner asks for no more. */
@@ -218,41 +225,42 @@ static real even_diagonal(const solid *s) {
     return (real)((s->definition.laplacian == KERNEL_QUADRATIC ? 1.115 : 0.537) / (s->definition.dx * s->definition.dx));
 }
 
-/* The planes from the sums: A, c, M⁻¹, and search = m, for B m. */
+/* The planes from the sums: A, M⁻¹, and search = x0 = m + R s of the expected s, for B x0. */
 static void prepare_slot(void *context, int64_t slot, int worker) {
     (void)worker;
     solid *s = context;
     real sums[BLOCK_NODES * NODE], even = even_diagonal(s);
-    real *diagonal = plane(s, slot, DIAGONAL), *source = plane(s, slot, SOURCE), *precondition = plane(s, slot, PRECONDITIONER);
+    real *diagonal = plane(s, slot, DIAGONAL), *before = plane(s, slot, BEFORE), *precondition = plane(s, slot, PRECONDITIONER);
     real *volume = plane(s, slot, VOLUME), *search = plane(s, slot, SEARCH);
+    const real *last = plane(s, slot, SPREAD), *expected = plane(s, slot, RESIDUAL_VECTOR);
     double norm = 0;
     memcpy(sums, diagonal, sizeof sums);
     for (int n = 0; n < BLOCK_NODES; n++) {
         const real *sum = sums + NODE * n;
         bool used = sum[0] > 0;
-        real inverse = used ? (sum[3] / sum[0]) * (sum[3] / sum[0]) : 0;
-        search[n] = used ? sum[1] / sum[3] : 0;
+        real inverse = used ? (sum[3] / sum[0]) * (sum[3] / sum[0]) : 0, source = sum[1] * inverse;
+        search[n] = used ? sum[1] / sum[3] + expected[n] / inverse : 0;
         volume[n] = sum[3];
         diagonal[n] = sum[3] * inverse;
-        source[n] = sum[1] * inverse;
         precondition[n] = used ? 1 / (diagonal[n] + even * sum[2]) : 0;
-        norm += (double)source[n] * (double)source[n];
+        before[n] = last[n];
+        norm += (double)source * (double)source;
     }
     memset(plane(s, slot, IMAGE), 0, BLOCK_NODES * sizeof(real));
     s->implicit_sums[2 * slot] = norm;
     s->implicit_sums[2 * slot + 1] = 0;
 }
 
-/* From m, of which A m = c: r = −B m. Search ← M⁻¹ r; sums: r·M⁻¹r, r·r. */
+/* From x0, of which A x0 = c + V s of the expected s: r = −V s − B x0. Search ← M⁻¹ r; sums: r·M⁻¹r, r·r. */
 static void residual_slot(void *context, int64_t slot, int worker) {
     (void)worker;
     solid *s = context;
-    const real *precondition = plane(s, slot, PRECONDITIONER);
+    const real *precondition = plane(s, slot, PRECONDITIONER), *volume = plane(s, slot, VOLUME);
     real *r = plane(s, slot, RESIDUAL_VECTOR), *p = plane(s, slot, SEARCH), *spread = plane(s, slot, SPREAD), *image = plane(s, slot, IMAGE);
     double preconditioned = 0, square = 0;
     for (int n = 0; n < BLOCK_NODES; n++) {
         spread[n] = image[n];
-        r[n] = precondition[n] > 0 ? -image[n] : 0;
+        r[n] = precondition[n] > 0 ? -volume[n] * r[n] - image[n] : 0;
         p[n] = precondition[n] * r[n];
         image[n] = 0;
         preconditioned += (double)r[n] * (double)p[n];
@@ -308,16 +316,18 @@ static void turn_slot(void *context, int64_t slot, int worker) {
     memset(plane(s, slot, IMAGE), 0, BLOCK_NODES * sizeof(real));
 }
 
-/* Diffusion at the nodes, where the way back to the particles looks for it: R s = −B d / A. */
+/* s = −V⁻¹ B d for the next step; R s and R side by side, which is all that particles need. */
 static void spread_slot(void *context, int64_t slot, int worker) {
     (void)worker;
     solid *s = context;
-    real *spread = plane(s, slot, SPREAD), *compliance = plane(s, slot, COMPLIANCE);
+    real *spread = plane(s, slot, SPREAD), *pair = plane(s, slot, PAIR);
     const real *diagonal = plane(s, slot, DIAGONAL), *volume = plane(s, slot, VOLUME);
     for (int n = 0; n < BLOCK_NODES; n++) {
-        real inverse = diagonal[n] > 0 ? 1 / diagonal[n] : 0;
-        spread[n] *= -inverse;
-        compliance[n] = volume[n] * inverse;
+        bool used = diagonal[n] > 0;
+        real compliance = used ? volume[n] / diagonal[n] : 0;
+        spread[n] = used ? -spread[n] / volume[n] : 0;
+        pair[2 * n] = compliance * spread[n];
+        pair[2 * n + 1] = compliance;
     }
 }
 
@@ -349,11 +359,12 @@ static void apply_diffusion(solid *s) {
 status implicit_solve(solid *s, real dt, report *r) {
     if (!s->implicit_on) return STATUS_OK;
     pass_context system = {.state = s, .dt = dt};
-    over_slots(s, clear_sums, s);
+    over_slots(s, begin_slot, s);
     colours_pass(s, s->definition.laplacian == KERNEL_CUBIC ? system_cubic : system_quadratic, &system);
     double right, square, rho, next, curvature, unused;
     over_slots(s, prepare_slot, s);
     sum_slots(s, &right, &unused);
+    s->implicit_known += s->implicit_known < 2;
     if (right == 0) { /* nothing drives and nothing is damaged: d = 0 is the solution */
         over_slots(s, no_spread_slot, s);
         return STATUS_OK;
@@ -383,17 +394,34 @@ status implicit_solve(solid *s, real dt, report *r) {
 /* ---- back to particles ------------------------------------------------------------------------------------------- */
 
 void implicit_load_window(const solid *s, const solid_block *b, real *window) {
+    bool wide = kernels_are_wide(s->definition.kernel, s->definition.laplacian, true);
     memset(window, 0, 2 * WINDOW_NODES * sizeof *window); /* see diffusion_block */
-    exchange_plane(s, b, window, SPREAD, false);
-    exchange_plane(s, b, window + WINDOW_NODES, COMPLIANCE, false);
+    exchange_window(b, window, s->implicit_grid + PAIR * BLOCK_NODES, 2, PLANES * BLOCK_NODES, wide, false);
+}
+
+/* Σ w_ip a_i / Σ w_ip b_i of one particle whose record kernel_records made, of pairs (a, b). */
+SIMD_INLINE real ratio_at(const real *r, int nodes, const real *pairs) {
+    vec8 total = {0}, weight;
+    for (int i = 0; i < nodes; i++) {
+        vec8 sum = {0};
+        for (int j = 0; j < nodes; j++) {
+            vec8 row;
+            vec8_load(&row, pairs + 2 * (i * STRIDE_X + j * STRIDE_Y));
+            vec8_add_scaled(&sum, &row, r[G2P_WY + j]);
+        }
+        vec8_add_scaled(&total, &sum, r[G2P_WX + i]);
+    }
+    vec8_doubled(&weight, r + G2P_WZ);
+    total *= weight;
+    return ((total[0] + total[4]) + (total[2] + total[6])) / ((total[1] + total[5]) + (total[3] + total[7]));
 }
 
 SIMD_INLINE void gather_spread(const tile_work *w, kernel_kind kind, bool weighed, const real *window) {
     int nodes = kind == KERNEL_QUADRATIC ? 3 : 4;
     if (!weighed) kernel_records(w->state, w->tile, 0, w->tile->pack_count, w->scratch->records, kind);
     for (int p = 0; p < w->tile->count; p++) {
-        const real *r = w->scratch->records + p * RECORD, *first = window + (int)r[G2P_NODE];
-        w->scratch->laplacian[p] = mean_at(r, nodes, first) / mean_at(r, nodes, first + WINDOW_NODES);
+        const real *r = w->scratch->records + p * RECORD;
+        w->scratch->laplacian[p] = ratio_at(r, nodes, window + 2 * (int)r[G2P_NODE]);
     }
     for (int p = w->tile->count; p < w->tile->pack_count * PACK; p++) w->scratch->laplacian[p] = 0;
 }

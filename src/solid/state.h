@@ -177,6 +177,7 @@ struct solid {
     bool material_damaged[SOLID_MATERIALS], material_implicit[SOLID_MATERIALS]; /* by whichever damage model */
     implicit_material implicit_materials[SOLID_MATERIALS];
     double implicit_tolerance;
+    int implicit_known; /* of how many steps before, two at most, the slots hold the solution */
     int32_t implicit_capacity;
     real *implicit_grid;   // [implicit_capacity][IMPLICIT_PLANES][BLOCK_NODES], implicit.c
     double *implicit_sums; // [implicit_capacity][2]

@@ -322,11 +322,11 @@ SIMD_INLINE real vec4_sum(const vec4 *a) {
     return half[0] + half[1];
 }
 
-/* out[0 … 2] = the sums (0 + 2) + (1 + 3) of the lanes of three. */
-SIMD_INLINE void vec4_sums(const vec4 *a, const vec4 *b, const vec4 *c, vec4 *out) {
+/* out = the sums (0 + 2) + (1 + 3) of the lanes of four. */
+SIMD_INLINE void vec4_sums(const vec4 *a, const vec4 *b, const vec4 *c, const vec4 *d, vec4 *out) {
     vec4 ab = __builtin_shufflevector(*a, *b, 0, 4, 1, 5) + __builtin_shufflevector(*a, *b, 2, 6, 3, 7);
-    vec4 cc = __builtin_shufflevector(*c, *c, 0, 4, 1, 5) + __builtin_shufflevector(*c, *c, 2, 6, 3, 7);
-    *out = __builtin_shufflevector(ab, cc, 0, 1, 4, 5) + __builtin_shufflevector(ab, cc, 2, 3, 6, 7);
+    vec4 cd = __builtin_shufflevector(*c, *d, 0, 4, 1, 5) + __builtin_shufflevector(*c, *d, 2, 6, 3, 7);
+    *out = __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
 }
 
 /* ---- rows: four nodes of four reals, for the transfers ----------------------------------------------------------- */
@@ -377,6 +377,12 @@ SIMD_INLINE node_row row_scale(node_row a, real s) {
     vec scale = vec_all(s);
     for (int i = 0; i < ROW_PARTS; i++) a.part[i] = a.part[i] * scale;
     return a;
+}
+
+/* to += s · a in memory, of the first `nodes` of its nodes at least. */
+SIMD_INLINE void row_add_scaled_to(real *to, node_row a, real s, int nodes) {
+    vec scale = vec_all(s);
+    for (int i = 0; i < ROW_PARTS && i * VEC_LANES < 4 * nodes; i++) vec_store(to + i * VEC_LANES, vec_fma(a.part[i], scale, vec_load(to + i * VEC_LANES)));
 }
 
 SIMD_INLINE node_row row_add(node_row a, node_row b) {

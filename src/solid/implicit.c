@@ -64,7 +64,7 @@ static bool tile_is_implicit(const solid *s, const solid_tile *tile) {
     return s->material_implicit[tile->material];
 }
 
-/* What a particle adds to its nodes: w (V r^(−1/2), V b/r, V l0², V). In the slots of a momentum record. */
+/* What a particle adds to its nodes: w (V r^(−1/2), V b/r, V l0², V). */
 SIMD_INLINE void system_records(const solid *s, const solid_tile *tile, real *records, kernel_kind kind, real dt) {
     const implicit_material *m = &s->implicit_materials[tile->material];
     for (int k = 0; k < tile->pack_count; k++)
@@ -72,92 +72,72 @@ SIMD_INLINE void system_records(const solid *s, const solid_tile *tile, real *re
             int32_t pack = tile->first_pack + k;
             vec volume = vec_load(field_at(&s->fields[FIELD_VOLUME], pack, 0, part)), H = vec_load(field_at(&s->fields[s->history_field], pack, 0, part));
             vec rate = scaled(s, s->viscosity_scale, pack, part, vec_all(m->eta / dt)), inverse = 1 / (rate + 1 + H);
-            kernel_place at = kernel_locate(kind, vec3v_load(&s->fields[FIELD_POSITION], pack, part));
             vec rest = inverse * vec_fma(rate, vec_load(field_at(&s->fields[s->damage_field], pack, 0, part)), H);
-            vec columns[RECORD] = {volume * vec_sqrt(inverse), volume * rest, volume * m->length2, volume};
-            kernel_weights(kind, at.u.x, columns + P2G_WX);
-            kernel_weights(kind, at.u.y, columns + P2G_WY);
-            kernel_weights(kind, at.u.z, columns + P2G_WZ);
-            columns[P2G_NODE] = window_index(at.base);
-            records_store(records, k * PACK + part * VEC_LANES, 0, columns, RECORD);
+            vec values[NODE] = {volume * vec_sqrt(inverse), volume * rest, volume * m->length2, volume};
+            plain_records(records, k * PACK + part * VEC_LANES, kind, vec3v_load(&s->fields[FIELD_POSITION], pack, part), values);
         }
 }
 
-/* A particle's record for B: weights, weights × distances in dx, V l0² D⁻². */
-enum { OF_WX = 0, OF_WY = 4, OF_WZ = 8, OF_MX = 12, OF_MY = 16, OF_MZ = 20, OF_FACTOR = 24, OF_NODE = 25 };
-
-SIMD_INLINE void moments(vec u, const vec w[4], vec m[4]) {
-    for (int n = 0; n < 4; n++) m[n] = w[n] * ((real)n - u);
-}
-
-SIMD_INLINE void diffusion_records(const solid *s, const solid_tile *tile, real *records, kernel_kind kind) {
+/* V l0² D⁻² of a tile's particles. */
+SIMD_INLINE void diffusion_factors(const solid *s, const solid_tile *tile, kernel_kind kind, real *factors) {
     real gradient = (real)((kind == KERNEL_QUADRATIC ? 4.0 : 3.0) / s->definition.dx); /* D⁻¹ in dx: ∇Θ = this × w × (distance in dx) */
     real factor = s->implicit_materials[tile->material].length2 * gradient * gradient;
     for (int k = 0; k < tile->pack_count; k++)
-        for (int part = 0; part < PACK_PARTS; part++) {
-            int32_t pack = tile->first_pack + k;
-            kernel_place at = kernel_locate(kind, vec3v_load(&s->fields[FIELD_POSITION], pack, part));
-            vec columns[RECORD] = {vec_all(0)};
-            kernel_weights(kind, at.u.x, columns + OF_WX);
-            kernel_weights(kind, at.u.y, columns + OF_WY);
-            kernel_weights(kind, at.u.z, columns + OF_WZ);
-            moments(at.u.x, columns + OF_WX, columns + OF_MX);
-            moments(at.u.y, columns + OF_WY, columns + OF_MY);
-            moments(at.u.z, columns + OF_WZ, columns + OF_MZ);
-            columns[OF_FACTOR] = factor * vec_load(field_at(&s->fields[FIELD_VOLUME], pack, 0, part));
-            columns[OF_NODE] = window_index(at.base);
-            records_store(records, k * PACK + part * VEC_LANES, 0, columns, RECORD);
-        }
+        for (int part = 0; part < PACK_PARTS; part++)
+            vec_store(factors + k * PACK + part * VEC_LANES, factor * vec_load(field_at(&s->fields[FIELD_VOLUME], tile->first_pack + k, 0, part)));
 }
 
-/* V l0² Σ ∇Θ_j x_j of one particle, by separable sums as in gather_particle. */
-SIMD_INLINE void gradient(const real *r, int nodes, const real *x, vec4 *out) {
-    vec4 plain = {0}, along_x = {0}, along_y = {0}, weight, moment;
+/* Σ t_n and Σ (n − 1) t_n over three or four nodes: from the second, as near to a particle as nodes are, so that little cancels. */
+SIMD_INLINE void sum_and_lean(const vec4 t[4], int nodes, vec4 *sum, vec4 *lean) {
+    *sum = t[0] + t[2] + t[1];
+    *lean = t[2] - t[0];
+    if (nodes == 4) *sum += t[3], *lean += t[3] + t[3];
+}
+
+/* factor × Σ w_j (x_j − x_p) of the nodes' values, distances in dx, for one particle whose record kernel_records made; the fourth is no use. */
+SIMD_INLINE void gradient(const real *r, real factor, int nodes, const real *values, vec4 *out) {
+    const vec4 distance = {-1, 0, 1, 2};
+    vec4 plain[4], along_y = {0}, weight, place, sum, along_x, along_z;
     for (int i = 0; i < nodes; i++) {
-        vec4 sum = {0}, leaning = {0};
+        vec4 row[4], lean;
+        for (int j = 0; j < nodes; j++) {
+            vec4_load(&row[j], values + i * STRIDE_X + j * STRIDE_Y);
+            row[j] *= r[G2P_WY + j];
+        }
+        sum_and_lean(row, nodes, &plain[i], &lean);
+        plain[i] *= r[G2P_WX + i];
+        vec4_add_scaled(&along_y, &lean, r[G2P_WX + i]);
+    }
+    sum_and_lean(plain, nodes, &sum, &along_x);
+    vec4_load(&weight, r + G2P_WZ);
+    sum *= weight, along_x *= weight, along_y *= weight;
+    along_z = sum * distance;
+    vec4_sums(&along_x, &along_y, &along_z, &sum, out);
+    vec4_load(&place, r + G2P_OFFSET);
+    place -= 1;
+    *out = (*out - place * (*out)[3]) * factor;
+}
+
+/* image += w_i (x_i − x_p) · g at the particle's nodes. */
+SIMD_INLINE void scatter_gradient(const real *r, const vec4 *g, int nodes, real *image) {
+    const vec4 distance = {0, 1, 2, 3};
+    vec4 weight, place, value, along_x, along_y;
+    vec4_load(&weight, r + G2P_WZ);
+    vec4_load(&place, r + G2P_OFFSET);
+    place *= *g;
+    value = (distance * (*g)[2] - (place[0] + place[1] + place[2])) * weight;
+    along_x = weight * (*g)[0], along_y = weight * (*g)[1];
+    for (int i = 0; i < nodes; i++) {
+        vec4 here = value * r[G2P_WX + i], slope = along_y * r[G2P_WX + i];
         for (int j = 0; j < nodes; j++) {
             vec4 row;
-            vec4_load(&row, x + i * STRIDE_X + j * STRIDE_Y);
-            vec4_add_scaled(&sum, &row, r[OF_WY + j]);
-            vec4_add_scaled(&leaning, &row, r[OF_MY + j]);
+            vec4_load(&row, image + i * STRIDE_X + j * STRIDE_Y);
+            vec4_add_scaled(&row, &here, r[G2P_WY + j]);
+            vec4_store(image + i * STRIDE_X + j * STRIDE_Y, &row);
+            here += slope;
         }
-        vec4_add_scaled(&plain, &sum, r[OF_WX + i]);
-        vec4_add_scaled(&along_x, &sum, r[OF_MX + i]);
-        vec4_add_scaled(&along_y, &leaning, r[OF_WX + i]);
+        value += along_x;
     }
-    vec4_load(&weight, r + OF_WZ);
-    vec4_load(&moment, r + OF_MZ);
-    along_x *= weight, along_y *= weight, plain *= moment;
-    vec4_sums(&along_x, &along_y, &plain, out);
-    *out *= r[OF_FACTOR];
-}
-
-/* y += V l0² ∇Θ_i · Σ ∇Θ_j x_j over particles that share a first node. */
-SIMD_INLINE int diffusion_run(const real *records, int p, int count, int nodes, const real *x, real *y) {
-    real node = records[p * RECORD + OF_NODE];
-    vec4 sum[16] = {{0}};
-    for (; p < count && records[p * RECORD + OF_NODE] == node; p++) {
-        const real *r = records + p * RECORD;
-        vec4 g, weight, level, lean_x, lean_y;
-        gradient(r, nodes, x + (int)node, &g);
-        vec4_load(&weight, r + OF_WZ);
-        vec4_load(&level, r + OF_MZ);
-        lean_x = weight * g[0], lean_y = weight * g[1], level *= g[2];
-        for (int i = 0; i < nodes; i++) {
-            vec4 here = level * r[OF_WX + i], slope = lean_y * r[OF_WX + i];
-            vec4_add_scaled(&here, &lean_x, r[OF_MX + i]);
-            for (int j = 0; j < nodes; j++) {
-                vec4_add_scaled(&sum[i * nodes + j], &here, r[OF_WY + j]);
-                vec4_add_scaled(&sum[i * nodes + j], &slope, r[OF_MY + j]);
-            }
-        }
-    }
-    for (int i = 0; i < nodes; i++)
-        for (int j = 0; j < nodes; j++) {
-            real *to = y + (int)node + i * STRIDE_X + j * STRIDE_Y;
-            for (int n = 0; n < 4; n++) to[n] += sum[i * nodes + j][n];
-        }
-    return p;
 }
 
 /* One plane of a block's window to or from the grid. */
@@ -175,7 +155,7 @@ SIMD_INLINE void system_block(const pass_context *c, int32_t index, int worker, 
         const solid_tile *tile = &s->tiles[t];
         if (!tile_is_implicit(s, tile)) continue;
         system_records(s, tile, records, kind, c->dt);
-        for (int p = 0; p < tile->count;) p = scatter_plain_run(records, p, tile->count, kind == KERNEL_QUADRATIC ? 3 : 4, window);
+        scatter_plain(records, tile->count, kind, window);
     }
     bool wide = kernels_are_wide(s->definition.kernel, s->definition.laplacian, true);
     exchange_window(b, window, s->implicit_grid, NODE, PLANES * BLOCK_NODES, wide, true);
@@ -184,14 +164,21 @@ SIMD_INLINE void system_block(const pass_context *c, int32_t index, int worker, 
 SIMD_INLINE void diffusion_block(const pass_context *c, int32_t index, int worker, kernel_kind kind) {
     solid *s = c->state;
     const solid_block *b = &s->blocks[index];
-    real *x = s->workers[worker].implicit_window, *y = x + WINDOW_NODES, *records = s->workers[worker].tile.records;
+    real *x = s->workers[worker].implicit_window, *y = x + WINDOW_NODES, *records = s->workers[worker].tile.records, factors[TILE_PARTICLES];
     memset(x, 0, 2 * WINDOW_NODES * sizeof *x); /* rows are read four nodes long, and what no kernel reaches must be a number */
     exchange_plane(s, b, x, SEARCH, false);
     for (int32_t t = b->first_tile; t < b->first_tile + b->tile_count; t++) {
         const solid_tile *tile = &s->tiles[t];
         if (!tile_is_implicit(s, tile)) continue;
-        diffusion_records(s, tile, records, kind);
-        for (int p = 0; p < tile->count;) p = diffusion_run(records, p, tile->count, kind == KERNEL_QUADRATIC ? 3 : 4, x, y);
+        kernel_records(s, tile, records, kind);
+        diffusion_factors(s, tile, kind, factors);
+        for (int p = 0; p < tile->count; p++) {
+            const real *r = records + p * RECORD;
+            int node = (int)r[G2P_NODE], nodes = kind == KERNEL_QUADRATIC ? 3 : 4;
+            vec4 g;
+            gradient(r, factors[p], nodes, x + node, &g);
+            scatter_gradient(r, &g, nodes, y + node);
+        }
     }
     exchange_plane(s, b, y, IMAGE, true);
 }

@@ -126,16 +126,34 @@ SIMD_INLINE int scatter_particles(const real *records, int p, int end, int count
     return p;
 }
 
-/* Adds w times four reals at P2G_BASE of particles that share a first node. */
+/* Slots of a record of four plain values; weights along y and the first node follow those along x. No more columns than are needed: turning
+ * them costs as much as what is done with them. */
+enum { PLAIN_VALUE = 0, PLAIN_WZ = 4, PLAIN_WX = 8, PLAIN_COLUMNS = PLAIN_WX + 2 * 4 + VEC_LANES };
+
+SIMD_INLINE void plain_records(real *records, int first, kernel_kind kind, vec3v x, const vec values[NODE]) {
+    int nodes = kind == KERNEL_QUADRATIC ? 3 : 4, node = PLAIN_WX + 2 * nodes;
+    kernel_place at = kernel_locate(kind, x);
+    vec columns[PLAIN_COLUMNS];
+    for (int c = 0; c < NODE; c++) columns[PLAIN_VALUE + c] = values[c];
+    kernel_weights(kind, at.u.z, columns + PLAIN_WZ);
+    kernel_weights(kind, at.u.x, columns + PLAIN_WX);
+    kernel_weights(kind, at.u.y, columns + PLAIN_WX + nodes);
+    columns[node] = window_index(at.base);
+    for (int c = node + 1; c < PLAIN_COLUMNS; c++) columns[c] = vec_all(0);
+    records_store(records, first, 0, columns, (node + VEC_LANES) / VEC_LANES * VEC_LANES);
+}
+
+/* Adds w times the four values of particles that share a first node. */
 SIMD_INLINE int scatter_plain_run(const real *records, int p, int count, int nodes, real *window) {
-    real node = records[p * RECORD + P2G_NODE], *first = window + (int)node * NODE;
+    int slot = PLAIN_WX + 2 * nodes;
+    real node = records[p * RECORD + slot], *first = window + (int)node * NODE;
     node_row sum[16] = {{{{0}}}};
-    for (; p < count && records[p * RECORD + P2G_NODE] == node; p++) {
+    for (; p < count && records[p * RECORD + slot] == node; p++) {
         const real *r = records + p * RECORD;
-        node_row value = row_multiply(row_spread(r + P2G_WZ), row_repeat(r + P2G_BASE));
+        node_row value = row_multiply(row_spread(r + PLAIN_WZ), row_repeat(r + PLAIN_VALUE));
         for (int i = 0; i < nodes; i++) {
-            node_row here = row_scale(value, r[P2G_WX + i]);
-            for (int j = 0; j < nodes; j++) sum[i * nodes + j] = row_scale_add(here, r[P2G_WY + j], sum[i * nodes + j]);
+            node_row here = row_scale(value, r[PLAIN_WX + i]);
+            for (int j = 0; j < nodes; j++) sum[i * nodes + j] = row_scale_add(here, r[PLAIN_WX + nodes + j], sum[i * nodes + j]);
         }
     }
     for (int i = 0; i < nodes; i++)
@@ -144,6 +162,25 @@ SIMD_INLINE int scatter_plain_run(const real *records, int p, int count, int nod
             row_store(to, row_add(row_load(to), sum[i * nodes + j]));
         }
     return p;
+}
+
+/* The same for one particle, straight to the window. */
+SIMD_INLINE void scatter_plain_particle(const real *r, int nodes, real *window) {
+    real *first = window + (int)r[PLAIN_WX + 2 * nodes] * NODE;
+    node_row value = row_multiply(row_spread(r + PLAIN_WZ), row_repeat(r + PLAIN_VALUE));
+    for (int i = 0; i < nodes; i++) {
+        node_row here = row_scale(value, r[PLAIN_WX + i]);
+        for (int j = 0; j < nodes; j++) row_add_scaled_to(first + (i * STRIDE_X + j * STRIDE_Y) * NODE, here, r[PLAIN_WX + nodes + j], nodes);
+    }
+}
+
+/* Sums of a run stay in registers where a row is one; elsewhere they do not fit, and particles that move make runs short. */
+SIMD_INLINE void scatter_plain(const real *records, int count, kernel_kind kind, real *window) {
+    int nodes = kind == KERNEL_QUADRATIC ? 3 : 4;
+    if (ROW_PARTS == 1)
+        for (int p = 0; p < count;) p = scatter_plain_run(records, p, count, nodes, window);
+    else
+        for (int p = 0; p < count; p++) scatter_plain_particle(records + p * RECORD, nodes, window);
 }
 
 /* Σ w_ip x_i of one particle whose record kernel_records made. */

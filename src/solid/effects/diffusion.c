@@ -129,13 +129,8 @@ SIMD_INLINE void walk_records(const solid *s, const solid_tile *tile, const real
             int32_t pack = tile->first_pack + i;
             vec volume = vec_load(field_at(&s->fields[FIELD_VOLUME], pack, 0, part)), d = damage_of(s, tile, pack, part);
             vec weight = vec_load(weights + i * PACK + part * VEC_LANES) * volume * k * ((1 - d) * (1 - d)), d4 = d * d * (d * d);
-            kernel_place at = kernel_locate(kind, vec3v_load(&s->fields[FIELD_POSITION], pack, part));
-            vec columns[RECORD] = {weight * vec_load(field_at(&s->fields[s->diffusion.field], pack, 0, part)), weight, volume * (1 - d4 * d4), volume};
-            kernel_weights(kind, at.u.x, columns + P2G_WX);
-            kernel_weights(kind, at.u.y, columns + P2G_WY);
-            kernel_weights(kind, at.u.z, columns + P2G_WZ);
-            columns[P2G_NODE] = window_index(at.base);
-            records_store(records, i * PACK + part * VEC_LANES, 0, columns, RECORD);
+            vec values[NODE] = {weight * vec_load(field_at(&s->fields[s->diffusion.field], pack, 0, part)), weight, volume * (1 - d4 * d4), volume};
+            plain_records(records, i * PACK + part * VEC_LANES, kind, vec3v_load(&s->fields[FIELD_POSITION], pack, part), values);
         }
 }
 
@@ -150,7 +145,7 @@ SIMD_INLINE void walk_block(const walk_context *c, int32_t index, int worker, ke
         if (!takes_part(s, tile)) continue;
         weigh_tile(s, tile, c->from, c->to, own->tile.laplacian);
         walk_records(s, tile, own->tile.laplacian, records, kind);
-        for (int p = 0; p < tile->count;) p = scatter_plain_run(records, p, tile->count, kind == KERNEL_QUADRATIC ? 3 : 4, window);
+        scatter_plain(records, tile->count, kind, window);
     }
     exchange_window(b, window, s->diffusion.grid, NODE, NODE * BLOCK_NODES, is_wide(s), true);
 }

@@ -170,7 +170,7 @@ SIMD_INLINE void diffusion_block(const pass_context *c, int32_t index, int worke
     for (int32_t t = b->first_tile; t < b->first_tile + b->tile_count; t++) {
         const solid_tile *tile = &s->tiles[t];
         if (!tile_is_implicit(s, tile)) continue;
-        kernel_records(s, tile, records, kind);
+        kernel_records(s, tile, 0, tile->pack_count, records, kind);
         diffusion_factors(s, tile, kind, factors);
         for (int p = 0; p < tile->count; p++) {
             const real *r = records + p * RECORD;
@@ -388,19 +388,20 @@ void implicit_load_window(const solid *s, const solid_block *b, real *window) {
 
 /* Σ w_ip a_i / Σ w_ip b_i of one particle whose record kernel_records made, of pairs (a, b). */
 SIMD_INLINE real ratio_at(const real *r, int nodes, const real *pairs) {
-    vec8 total = {0}, weight;
-    for (int i = 0; i < nodes; i++) {
-        vec8 sum = {0};
-        for (int j = 0; j < nodes; j++) {
-            vec8 row;
-            vec8_load(&row, pairs + 2 * (i * STRIDE_X + j * STRIDE_Y));
-            vec8_add_scaled(&sum, &row, r[G2P_WY + j]);
+    real above = 0, below = 0;
+    SIMD_UNROLL
+    for (int lane = 0; lane < PAIRS; lane += PAIRS_LANES) {
+        vec_pairs total = {0};
+        for (int i = 0; i < nodes; i++) {
+            vec_pairs sum = {0};
+            for (int j = 0; j < nodes; j++) sum = pairs_add_scaled(sum, pairs_load(pairs + 2 * (i * STRIDE_X + j * STRIDE_Y) + lane), r[G2P_WY + j]);
+            total = pairs_add_scaled(total, sum, r[G2P_WX + i]);
         }
-        vec8_add_scaled(&total, &sum, r[G2P_WX + i]);
+        total *= pairs_double(r + G2P_WZ + lane / 2);
+        SIMD_UNROLL
+        for (int n = 0; n < PAIRS_LANES; n += 2) above += total[n], below += total[n + 1];
     }
-    vec8_doubled(&weight, r + G2P_WZ);
-    total *= weight;
-    return ((total[0] + total[4]) + (total[2] + total[6])) / ((total[1] + total[5]) + (total[3] + total[7]));
+    return above / below;
 }
 
 SIMD_INLINE void gather_spread(const tile_work *w, kernel_kind kind, bool weighed, const real *window) {

@@ -11,7 +11,7 @@
 enum {
     RECORD = 32,
     P2G_BASE = 0, P2G_X = 4, P2G_Y = 8, P2G_Z = 12, P2G_WZ = 16, P2G_WX = 20, P2G_WY = 24, P2G_NODE = 28, P2G_DAMAGE = 29 /* and 1 */,
-    G2P_WX = 0, G2P_WY = 4, G2P_WZ = 8, G2P_NODE = 12, G2P_SHIFT = 13 /* of the kernel's first node along z in its row */, G2P_OUT = 16,
+    G2P_WX = 0, G2P_WY = 4, G2P_WZ = 8, G2P_OFFSET = 12, G2P_NODE = 15, G2P_OUT = 16,
 };
 
 /* Writes columns[0 … count) of a part's lanes into slots from `slot` on of their records; count is a multiple of VEC_LANES. The columns are
@@ -36,8 +36,8 @@ SIMD_INLINE void gather_columns(kernel_kind kernel, kernel_place at, vec columns
     kernel_weights(kernel, row.u.x, columns + G2P_WX);
     kernel_weights(kernel, row.u.y, columns + G2P_WY);
     kernel_row_weights(kernel, row.u.z, columns + G2P_WZ);
-    columns[G2P_NODE] = window_index(row.base), columns[G2P_SHIFT] = at.base.z - row.base.z;
-    for (int c = G2P_SHIFT + 1; c < G2P_OUT; c++) columns[c] = vec_all(0);
+    columns[G2P_OFFSET] = row.u.x, columns[G2P_OFFSET + 1] = row.u.y, columns[G2P_OFFSET + 2] = row.u.z;
+    columns[G2P_NODE] = window_index(row.base);
 }
 
 /* Weights and places of the particles of a tile's packs from `first` to before `end`, as a gather wants them: along z of the row's four nodes. */

@@ -389,13 +389,19 @@ SIMD_INLINE real quadratic_laplacian(const real *r, const second_differences *d)
     return vec4_sum(&total);
 }
 
+/* How far the kernel's first node along z is from its row's: kernel_row_weights parts them at the same place. */
+SIMD_INLINE int row_shift(const real *r) {
+    return rows_are_even(KERNEL_QUADRATIC) && r[G2P_OFFSET + 2] >= (real)1.5;
+}
+
 /* Of particles that share a first node. */
 SIMD_INLINE int quadratic_laplacian_run(const real *records, int p, int count, real scale, const real *window, real *out) {
-    real node = records[p * RECORD + G2P_NODE], shift = records[p * RECORD + G2P_SHIFT];
+    const real *r = records + p * RECORD;
+    real node = r[G2P_NODE];
+    int shift = row_shift(r);
     second_differences d;
-    differ_nodes(window + (int)node, (int)shift, &d);
-    for (; p < count && records[p * RECORD + G2P_NODE] == node && records[p * RECORD + G2P_SHIFT] == shift; p++)
-        out[p] = quadratic_laplacian(records + p * RECORD, &d) * scale;
+    differ_nodes(window + (int)node, shift, &d);
+    for (; p < count && r[G2P_NODE] == node && row_shift(r) == shift; p++, r += RECORD) out[p] = quadratic_laplacian(r, &d) * scale;
     return p;
 }
 

@@ -128,7 +128,8 @@ SIMD_INLINE vec vec_min(vec a, vec b) {
 }
 
 SIMD_INLINE vec vec_abs(vec a) {
-    return vec_select(a < 0, -a, a);
+    const vec_mask sign = (vec_mask)vec_all(-(real)0);
+    return (vec)((vec_mask)a & ~sign);
 }
 
 SIMD_INLINE int vec_any(vec_mask mask) {

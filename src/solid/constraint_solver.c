@@ -16,7 +16,7 @@ static const double ITERATING = 230, ASSEMBLING = 30;
 /* Multiplications that a factorisation may take: some seconds. */
 static const double WORK_LIMIT = 2e10;
 
-/* Cells among held nodes have no row: the diagonal grows by this share of the largest, so that the matrix can be factored. */
+/* What the diagonal of the scaled matrix, one at the most, grows by, so that rounding leaves the matrix definite. */
 static const double SHIFT = 1e-9;
 
 static int stale_iterations(const fibre_constraint *c, int since) {
@@ -107,15 +107,20 @@ static int price(const solid *s, int64_t entries) {
     return 1 + (int)((making + ASSEMBLING * (double)entries) / (applying + ITERATING * particles));
 }
 
-static void shift_diagonal(sparse_matrix *m) {
-    double largest = 0;
-    for (int pass = 0; pass < 2; pass++)
-        for (int32_t column = 0; column < m->size; column++)
-            for (int32_t e = m->start[column]; e < m->start[column + 1]; e++) {
-                if (m->row[e] != column) continue;
-                if (pass == 0) largest = fmax(largest, m->value[e]);
-                else m->value[e] += SHIFT * largest;
-            }
+/* The matrix ← S A S, S² Jacobi's preconditioner; the vector of unknowns serves as room for S. A cell's row grows with its weight, by many orders of
+ * magnitude from the rim of a fibre to its middle: scaled, all count alike. Cells that have no say get a row of their own. */
+static void scale_matrix(solid *s, sparse_matrix *m) {
+    fibre_constraint *c = &s->constraint;
+    for (int32_t i = 0; i < c->slot_count; i++)
+        for (int n = 0; n < BLOCK_NODES; n++) {
+            int32_t number = c->number[(int64_t)c->slots[i] * BLOCK_NODES + n];
+            if (number >= 0) c->vector[number] = constraint_scale(s, c->slots[i], n);
+        }
+    for (int32_t column = 0; column < m->size; column++)
+        for (int32_t e = m->start[column]; e < m->start[column + 1]; e++) {
+            m->value[e] *= c->vector[column] * c->vector[m->row[e]];
+            if (m->row[e] == column) m->value[e] += c->vector[column] > 0 ? SHIFT : 1;
+        }
 }
 
 status constraint_precondition(solid *s, real dt, report *r) {
@@ -125,7 +130,7 @@ status constraint_precondition(solid *s, real dt, report *r) {
     status code = number_unknowns(s, r);
     if (code == STATUS_OK) code = constraint_assemble(s, dt, c->number, c->unknowns, &m, r);
     if (code == STATUS_OK) {
-        shift_diagonal(&m);
+        scale_matrix(s, &m);
         bool automatic = c->solver == CONSTRAINT_AUTO;
         if (c->solver == CONSTRAINT_DIRECT || (automatic && sparse_available(SPARSE_DIRECT)))
             code = sparse_create(SPARSE_DIRECT, &m, automatic ? WORK_LIMIT : 0, &c->preconditioner, r);

@@ -274,7 +274,7 @@ static void precondition_slot(void *context, int64_t slot, int worker) {
     real *z = plane(s, slot, PRECONDITIONED);
     constraint_sums sums = {0};
     for (int n = 0; n < BLOCK_NODES; n++) {
-        z[n] = answer && number[n] >= 0 && jacobi[n] > 0 ? (real)answer[number[n]] : jacobi[n] * r[n];
+        z[n] = answer && number[n] >= 0 ? (real)(constraint_scale(s, (int32_t)slot, n) * answer[number[n]]) : jacobi[n] * r[n];
         sums.first += (double)r[n] * (double)z[n];
     }
     own->sums[slot] = sums;
@@ -350,6 +350,10 @@ double constraint_weight(const solid *s, int32_t slot, int n) {
     return (double)plane(s, slot, WEIGHT)[n];
 }
 
+double constraint_scale(const solid *s, int32_t slot, int n) {
+    return sqrt((double)plane(s, slot, PRECONDITIONER)[n]);
+}
+
 double constraint_relaxation(const solid *s, int32_t slot, int n) {
     return (double)plane(s, slot, RELAXATION)[n];
 }
@@ -392,7 +396,7 @@ static status precondition(solid *s, slot_context *c, double *rho, report *r) {
             const int32_t *number = own->number + (int64_t)own->slots[i] * BLOCK_NODES;
             const real *residual = plane(s, own->slots[i], RESIDUAL);
             for (int n = 0; n < BLOCK_NODES; n++)
-                if (number[n] >= 0) own->vector[number[n]] = (double)residual[n];
+                if (number[n] >= 0) own->vector[number[n]] = constraint_scale(s, own->slots[i], n) * (double)residual[n];
         }
         status code = sparse_apply(own->preconditioner, own->vector, own->vector + own->vector_size, r);
         if (code != STATUS_OK) return code;

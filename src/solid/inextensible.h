@@ -29,8 +29,9 @@ void constraint_map(solid *s);
 void constraint_forget(solid *s);
 void constraint_begin_frame(solid *s);
 
-/* Σ V Γ and ε of a cell. */
+/* Σ V Γ and ε of a cell, and the root of Jacobi's preconditioner: 0 where a cell has no say. */
 double constraint_weight(const solid *s, int32_t slot, int n);
+double constraint_scale(const solid *s, int32_t slot, int n);
 double constraint_relaxation(const solid *s, int32_t slot, int n);
 /* The operator as a matrix over the cells that have a number (constraint_matrix.c). Errors: out of memory. */
 status constraint_assemble(const solid *s, real dt, const int32_t *number, int32_t cells, sparse_matrix *m, report *r);

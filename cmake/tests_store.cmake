@@ -1,4 +1,5 @@
 sunder_test(json tests/unit/test_json.c sunder_base)
+sunder_test(dissection tests/unit/test_dissection.c sunder_base)
 sunder_test(frames tests/store/test_frames.c sunder_store)
 sunder_test(checkpoints tests/store/test_checkpoints.c sunder_store)
 sunder_test(store_faults tests/store/test_store_faults.c sunder_store)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #ifdef SUNDER_HAS_CHOLMOD
+#include <dlfcn.h>
 #include <suitesparse/cholmod.h>
 #endif
 #ifdef SUNDER_HAS_HYPRE
@@ -52,14 +53,17 @@ const char *sparse_package(sparse_kind kind) {
     return kind == SPARSE_DIRECT ? "libsuitesparse-dev" : "libhypre-dev";
 }
 
-bool sparse_allocate(sparse_matrix *m, int32_t size, int64_t entries) {
-    *m = (sparse_matrix){.size = size, .capacity = entries};
+bool sparse_start(sparse_matrix *m, int32_t size) {
+    *m = (sparse_matrix){.size = size};
     m->start = memory_allocate_array((size_t)size + 1, sizeof *m->start);
-    m->row = memory_allocate_array((size_t)entries, sizeof *m->row);
-    m->value = memory_allocate_array((size_t)entries, sizeof *m->value);
-    if (m->start && m->row && m->value) return true;
-    sparse_free(m);
-    return false;
+    return m->start;
+}
+
+bool sparse_allocate(sparse_matrix *m) {
+    m->capacity = m->start[m->size];
+    m->row = memory_allocate_array((size_t)m->capacity, sizeof *m->row);
+    m->value = memory_allocate_array((size_t)m->capacity, sizeof *m->value);
+    return m->row && m->value;
 }
 
 void sparse_free(sparse_matrix *m) {
@@ -72,9 +76,9 @@ void sparse_free(sparse_matrix *m) {
 /* ---- CHOLMOD ----------------------------------------------------------------------------------------------------- */
 
 #ifdef SUNDER_HAS_CHOLMOD
-/* For sparse_price, nanoseconds: a multiplication of a simplicial factorisation or of a solve takes one; ordering and copies take these an entry of the
- * matrix. */
-static const double ANALYSING = 10;
+/* For sparse_price, nanoseconds: of analysis and copies an entry of the matrix, of a factorisation (with a BLAS that is made for the processor) and of
+ * a solve a multiplication. */
+static const double ANALYSING = 10, FACTORING = 0.05, SOLVING = 0.6;
 
 /* CHOLMOD's view of a matrix that it does not own. */
 static cholmod_sparse view_of(const sparse_matrix *m) {
@@ -83,18 +87,36 @@ static cholmod_sparse view_of(const sparse_matrix *m) {
                             .sorted = 0, .packed = 1};
 }
 
+/* CHOLMOD asks OpenMP for four threads, and OpenBLAS takes all processors where it is not the serial one: with blocks as small as these they mostly wait for each
+ * other, and sums may be split by the number of threads. Neither need be there: what BLAS is, the system decides when the program starts. */
+static void stay_on_one_thread(void) {
+    static const struct {
+        const char *name;
+        int argument;
+    } calls[] = {{"omp_set_max_active_levels", 0}, {"openblas_set_num_threads", 1}};
+    for (size_t i = 0; i < sizeof calls / sizeof calls[0]; i++) {
+        void (*call)(int) = NULL;
+        void *found = dlsym(RTLD_DEFAULT, calls[i].name);
+        memcpy(&call, &found, sizeof call); /* C has no cast from an object's pointer to a function's */
+        if (call) call(calls[i].argument);
+    }
+}
+
 static status direct_create(sparse_solver *s, const sparse_matrix *m, double work_limit, bool *too_much, report *r) {
     cholmod_sparse a = view_of(m);
+    stay_on_one_thread();
     cholmod_start(&s->common);
-    s->common.supernodal = CHOLMOD_SIMPLICIAL; /* the supernodal one's bits depend on the BLAS */
     s->common.print = 0;
+    s->common.nmethods = 1;
+    s->common.method[0].ordering = m->ordered ? CHOLMOD_NATURAL : CHOLMOD_AMD;
+    s->common.postorder = !m->ordered;
     s->factor = cholmod_analyze(&a, &s->common);
     *too_much = s->factor && work_limit > 0 && s->common.fl > work_limit;
     if (*too_much) return STATUS_OK;
     if (!s->factor || !cholmod_factorize(&a, s->factor, &s->common) || s->common.status != CHOLMOD_OK)
         return report_set(r, STATUS_DIVERGED, "the factorisation of %d unknowns failed (CHOLMOD status %d)", m->size, s->common.status);
-    s->making = s->common.fl + ANALYSING * (double)m->start[m->size];
-    s->applying = 2 * s->common.lnz;
+    s->making = FACTORING * s->common.fl + ANALYSING * (double)m->start[m->size];
+    s->applying = SOLVING * 2 * s->common.lnz;
     s->right = cholmod_allocate_dense((size_t)m->size, 1, (size_t)m->size, CHOLMOD_REAL, &s->common);
     return s->right ? STATUS_OK : report_set(r, STATUS_SYSTEM, "out of memory for a factorisation of %d unknowns", m->size);
 }

@@ -2,7 +2,7 @@
  *
  * The systems are those that a solver of ours meets matrix-free and cannot bring down alone; an assembled copy, even of some steps
  * ago, makes a good preconditioner. CHOLMOD (SuiteSparse) factors it; hypre's BoomerAMG runs one V-cycle over it. One thread, f64:
- * the same bits whatever runs beside. */
+ * the same bits whatever runs beside, as long as the libraries are the same: CHOLMOD factors dense blocks by the machine's BLAS. */
 #ifndef SUNDER_BASE_SPARSE_H
 #define SUNDER_BASE_SPARSE_H
 
@@ -17,7 +17,8 @@ typedef struct sparse_matrix {
     int32_t *start; /* [size + 1] */
     int32_t *row;   /* [start[size]] */
     double *value;  /* [start[size]] */
-    int64_t capacity; /* of row and value, for sparse_free */
+    int32_t capacity; /* of row and value, for sparse_free */
+    bool ordered;     /* numbered so that a factorisation fills in little (dissection.h); else the library looks for an order */
 } sparse_matrix;
 
 typedef enum sparse_kind { SPARSE_DIRECT, SPARSE_AMG, SPARSE_KINDS } sparse_kind;
@@ -28,8 +29,10 @@ typedef struct sparse_solver sparse_solver;
 bool sparse_available(sparse_kind kind);
 const char *sparse_package(sparse_kind kind);
 
-/* Room for a matrix of that size and at most so many entries; false when memory is out, with nothing allocated. */
-bool sparse_allocate(sparse_matrix *m, int32_t size, int64_t entries);
+/* Room for `start`, zeroed; once that holds the columns' beginnings, room for the entries. False when memory is out. sparse_free takes what either
+ * left. */
+bool sparse_start(sparse_matrix *m, int32_t size);
+bool sparse_allocate(sparse_matrix *m);
 void sparse_free(sparse_matrix *m);
 
 /* Makes a preconditioner from a matrix, which it copies. `work_limit` (0: none) is the most multiplications that a factorisation may

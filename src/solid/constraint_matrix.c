@@ -1,7 +1,7 @@
 /* The inextensible solve's operator as a matrix, B M⁻¹ Bᵀ + ε over the cells that hold fibres (METHOD.md §4): what libraries make
- * preconditioners of. B's row of a cell is dense on the nodes around it: 4³ with the quadratic kernel, 6³ with the cubic. In f64 and one
- * thread: it is made seldom. */
+ * preconditioners of. B's row of a cell is dense on the nodes around it: 4³ with the quadratic kernel, 6³ with the cubic. In f64. */
 #include "base/memory.h"
+#include "base/threads.h"
 #include "solid/inextensible_lanes.h"
 #include "solid/order.h"
 
@@ -14,7 +14,7 @@ typedef struct assembly {
     int low, width; /* a cell's nodes start at `low` from it */
     double *rows;   // [cells][width³][3]
     int32_t (*near)[125]; // [slots] slots of the blocks around, −2 … 2; −1: none
-    int32_t around[AROUND * AROUND * AROUND]; /* numbers of a slot's cells and of those that share a node with them */
+    sparse_matrix *matrix;
 } assembly;
 
 static size_t row_size(const assembly *a) {
@@ -63,26 +63,33 @@ SIMD_INLINE void add_particle(const assembly *a, const fibre_lanes *l, int lane,
     }
 }
 
-static void add_particles(const assembly *a) {
+SIMD_INLINE void add_block(const assembly *a, int32_t block, kernel_kind kernel) {
     const solid *s = a->state;
-    kernel_kind kernel = s->definition.kernel;
-    for (int32_t i = 0; i < s->block_count; i++) {
-        const solid_block *b = &s->blocks[i];
-        FOR_EACH_PART(s, b, {
-            fibre_lanes l = lanes_load(s, kernel, pack, part);
-            for (int lane = 0; lane < LANES_OF(t, first); lane++) add_particle(a, &l, lane, b, kernel);
-        })
-    }
+    const solid_block *b = &s->blocks[block];
+    FOR_EACH_PART(s, b, {
+        fibre_lanes l = lanes_load(s, kernel, pack, part);
+        for (int lane = 0; lane < LANES_OF(t, first); lane++) add_particle(a, &l, lane, b, kernel);
+    })
 }
 
-static void find_near(assembly *a) {
-    const solid *s = a->state;
-    for (int32_t slot = 0; slot < s->slot_count; slot++)
-        for (int n = 0; n < 125; n++) {
-            int32_t c[3] = {s->slot_coordinate[slot][0] + n / 25 - 2, s->slot_coordinate[slot][1] + n / 5 % 5 - 2,
-                            s->slot_coordinate[slot][2] + n % 5 - 2};
-            a->near[slot][n] = order_rank(s, block_key(c));
-        }
+static void add_quadratic(void *context, int32_t block, int32_t next, int worker) {
+    (void)next, (void)worker;
+    add_block(context, block, KERNEL_QUADRATIC);
+}
+
+static void add_cubic(void *context, int32_t block, int32_t next, int worker) {
+    (void)next, (void)worker;
+    add_block(context, block, KERNEL_CUBIC);
+}
+
+static void find_near(void *context, int64_t slot, int worker) {
+    (void)worker;
+    const assembly *a = context;
+    const int32_t *own = a->state->slot_coordinate[slot];
+    for (int n = 0; n < 125; n++) {
+        int32_t c[3] = {own[0] + n / 25 - 2, own[1] + n / 5 % 5 - 2, own[2] + n % 5 - 2};
+        a->near[slot][n] = order_rank(a->state, block_key(c));
+    }
 }
 
 /* Index [slot][node] of what lies at an offset from a place in a slot, −1 outside the grid. */
@@ -148,70 +155,103 @@ static double product(int width, const double *response, const double *row, cons
     }
 }
 
-/* Whether the slot has unknowns; then also the numbers around it. */
-static bool number_around(assembly *a, int32_t slot) {
+/* The numbers of a slot's cells and of those that share a node with them; false when the slot has no unknowns. */
+static bool number_around(const assembly *a, int32_t slot, int32_t *around) {
     bool some = false;
     for (int n = 0; n < BLOCK_NODES; n++) some |= a->number[(int64_t)slot * BLOCK_NODES + n] >= 0;
     int reach = a->width - 1, wide = BLOCK + 2 * reach;
     for (int n = 0; n < wide * wide * wide && some; n++) {
         int at[3] = {n / (wide * wide) - reach, n / wide % wide - reach, n % wide - reach};
         int64_t index = index_at(a, slot, at);
-        a->around[n] = index < 0 ? -1 : a->number[index];
+        around[n] = index < 0 ? -1 : a->number[index];
     }
     return some;
 }
 
-static void add_column(const assembly *a, int32_t own, const int cell[3], const double *response, sparse_matrix *m, int64_t *used) {
+/* The column of one cell; `row` and `value` NULL: counts its entries only. */
+static int32_t add_column(const assembly *a, const int32_t *around, int32_t own, const int cell[3], const double *response, int32_t *row,
+                          double *value) {
     int reach = a->width - 1, wide = BLOCK + 2 * reach;
-    m->start[own] = (int32_t)*used;
+    int32_t used = 0;
     for (int i = -reach; i <= reach; i++)
         for (int j = -reach; j <= reach; j++) {
-            const int32_t *line = a->around + ((cell[0] + i + reach) * wide + cell[1] + j + reach) * wide + cell[2] + reach;
+            const int32_t *line = around + ((cell[0] + i + reach) * wide + cell[1] + j + reach) * wide + cell[2] + reach;
             for (int k = -reach; k <= reach; k++) {
                 if (line[k] < own) continue;
-                m->row[*used] = line[k];
-                m->value[(*used)++] = product(a->width, response, a->rows + (size_t)line[k] * row_size(a), (const int[]){i, j, k});
+                if (row) {
+                    row[used] = line[k];
+                    value[used] = product(a->width, response, a->rows + (size_t)line[k] * row_size(a), (const int[]){i, j, k});
+                }
+                used++;
             }
         }
+    return used;
 }
 
-static status fill(assembly *a, sparse_matrix *m, report *r) {
-    const solid *s = a->state;
-    double *response = memory_allocate_array(row_size(a), sizeof *response);
-    if (!response) return report_set(r, STATUS_SYSTEM, "out of memory for the matrix of inextensible fibres");
-    int64_t used = 0;
-    for (int32_t slot = 0; slot < s->slot_count; slot++) {
-        bool some = number_around(a, slot);
-        for (int n = 0; some && n < BLOCK_NODES; n++) {
-            int32_t own = a->number[(int64_t)slot * BLOCK_NODES + n];
-            if (own < 0) continue;
-            int cell[3] = {n / 16, n / 4 % 4, n % 4};
-            respond(a, slot, cell, a->rows + (size_t)own * row_size(a), response);
-            int64_t first = used;
-            add_column(a, own, cell, response, m, &used);
-            for (int64_t e = first; e < used; e++)
-                if (m->row[e] == own) m->value[e] += (double)constraint_relaxation(s, slot, n);
-        }
+static void count_slot(void *context, int64_t index, int worker) {
+    (void)worker;
+    const assembly *a = context;
+    int32_t around[AROUND * AROUND * AROUND], slot = a->state->constraint.slots[index];
+    bool some = number_around(a, slot, around);
+    for (int n = 0; some && n < BLOCK_NODES; n++) {
+        int32_t own = a->number[(int64_t)slot * BLOCK_NODES + n];
+        if (own >= 0) a->matrix->start[own + 1] = add_column(a, around, own, (const int[]){n / 16, n / 4 % 4, n % 4}, NULL, NULL, NULL);
     }
-    m->start[m->size] = (int32_t)used;
-    memory_free(response, row_size(a) * sizeof *response);
+}
+
+static void fill_slot(void *context, int64_t index, int worker) {
+    (void)worker;
+    const assembly *a = context;
+    sparse_matrix *m = a->matrix;
+    int32_t around[AROUND * AROUND * AROUND], slot = a->state->constraint.slots[index];
+    double response[WIDEST * WIDEST * WIDEST * 3];
+    bool some = number_around(a, slot, around);
+    for (int n = 0; some && n < BLOCK_NODES; n++) {
+        int32_t own = a->number[(int64_t)slot * BLOCK_NODES + n];
+        if (own < 0) continue;
+        int cell[3] = {n / 16, n / 4 % 4, n % 4};
+        respond(a, slot, cell, a->rows + (size_t)own * row_size(a), response);
+        int32_t *row = m->row + m->start[own];
+        double *value = m->value + m->start[own];
+        int32_t used = add_column(a, around, own, cell, response, row, value);
+        for (int32_t e = 0; e < used; e++)
+            if (row[e] == own) value[e] += constraint_relaxation(a->state, slot, n);
+    }
+}
+
+int constraint_reach(const solid *s) {
+    return (s->definition.kernel == KERNEL_QUADRATIC ? 4 : WIDEST) - 1;
+}
+
+/* Counts the entries and makes room for them. */
+static status allocate_matrix(assembly *a, sparse_matrix *m, int32_t cells, report *r) {
+    const solid *s = a->state;
+    if (!sparse_start(m, cells)) return report_set(r, STATUS_SYSTEM, "out of memory for the matrix of %d cells of inextensible fibres", cells);
+    parallel_for(s->threads, s->constraint.slot_count, 4, count_slot, a);
+    int64_t entries = 0;
+    for (int32_t i = 0; i < cells; i++) {
+        entries += m->start[i + 1];
+        if (entries >= INT32_MAX) return report_set(r, STATUS_SYSTEM, "%d cells of inextensible fibres are too many for a matrix", cells);
+        m->start[i + 1] = (int32_t)entries;
+    }
+    if (!sparse_allocate(m)) return report_set(r, STATUS_SYSTEM, "out of memory for the matrix of %d cells of inextensible fibres", cells);
     return STATUS_OK;
 }
 
-status constraint_assemble(const solid *s, real dt, const int32_t *number, int32_t cells, sparse_matrix *m, report *r) {
+status constraint_assemble(solid *s, real dt, const int32_t *number, int32_t cells, sparse_matrix *m, report *r) {
     bool quadratic = s->definition.kernel == KERNEL_QUADRATIC;
-    assembly a = {.state = s, .number = number, .dt = (double)dt, .low = quadratic ? -1 : -2, .width = quadratic ? 4 : 6};
-    int64_t stencil = (int64_t)(2 * a.width - 1) * (2 * a.width - 1) * (2 * a.width - 1), entries = cells * (stencil / 2 + 1);
-    if (entries >= INT32_MAX) return report_set(r, STATUS_SYSTEM, "%d cells of inextensible fibres are too many for a matrix", cells);
+    assembly a = {.state = s, .number = number, .dt = (double)dt, .low = quadratic ? -1 : -2, .width = constraint_reach(s) + 1, .matrix = m};
     a.rows = memory_allocate_array((size_t)cells, row_size(&a) * sizeof *a.rows);
     a.near = memory_allocate_array((size_t)s->slot_count, sizeof *a.near);
     status code = STATUS_OK;
-    if (!a.rows || !a.near || !sparse_allocate(m, cells, entries))
-        code = report_set(r, STATUS_SYSTEM, "out of memory for the matrix of %d cells of inextensible fibres", cells);
+    if (!a.rows || !a.near) code = report_set(r, STATUS_SYSTEM, "out of memory for the matrix of %d cells of inextensible fibres", cells);
     if (code == STATUS_OK) {
-        find_near(&a);
-        add_particles(&a);
-        code = fill(&a, m, r);
+        parallel_for(s->threads, s->slot_count, 64, find_near, &a);
+        code = allocate_matrix(&a, m, cells, r);
+    }
+    if (code == STATUS_OK) {
+        colours_pass(s, quadratic ? add_quadratic : add_cubic, &a);
+        parallel_for(s->threads, s->constraint.slot_count, 4, fill_slot, &a);
     }
     memory_free(a.rows, a.rows ? (size_t)cells * row_size(&a) * sizeof *a.rows : 0);
     memory_free(a.near, a.near ? (size_t)s->slot_count * sizeof *a.near : 0);

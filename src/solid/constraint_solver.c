@@ -1,9 +1,11 @@
 /* The inextensible solve's preconditioner: when to make one, of what, and which cells it knows. */
+#include "base/dissection.h"
 #include "base/memory.h"
 #include "solid/inextensible.h"
 #include "solid/order.h"
 
 #include <math.h>
+#include <string.h>
 
 enum {
     PATIENCE = 40, /* iterations with Jacobi's before AUTO looks for better */
@@ -11,9 +13,9 @@ enum {
 };
 
 /* Nanoseconds, roughly: an iteration a particle, and assembling a matrix an entry. Only what one is of the other counts. */
-static const double ITERATING = 230, ASSEMBLING = 30;
+static const double ITERATING = 100, ASSEMBLING = 60;
 
-/* Multiplications that a factorisation may take: some seconds. */
+/* Multiplications that a factorisation may take: a second with a BLAS that is made for the processor, ten or more with the reference one. */
 static const double WORK_LIMIT = 2e10;
 
 /* What the diagonal of the scaled matrix, one at the most, grows by, so that rounding leaves the matrix definite. */
@@ -61,30 +63,9 @@ static int32_t count_unknowns(const solid *s) {
     return count;
 }
 
-/* Numbers the cells that hold fibres, in the order of slots. */
-static status number_unknowns(solid *s, report *r) {
-    fibre_constraint *c = &s->constraint;
-    constraint_forget(s);
-    size_t count = (size_t)count_unknowns(s);
-    c->vector = memory_allocate_array(2 * count, sizeof *c->vector);
-    c->unknown = memory_allocate_array(count, sizeof *c->unknown);
-    c->vector_size = (int32_t)count;
-    if (!c->vector || !c->unknown) return report_set(r, STATUS_SYSTEM, "out of memory for %d cells of inextensible fibres", (int)count);
-    for (int64_t i = 0; i < (int64_t)s->slot_count * BLOCK_NODES; i++) c->number[i] = -1;
-    for (int32_t i = 0; i < c->slot_count; i++)
-        for (int n = 0; n < BLOCK_NODES; n++) {
-            if (!(constraint_weight(s, c->slots[i], n) > 0)) continue;
-            const int32_t *block = s->slot_coordinate[c->slots[i]], at[3] = {n / 16, n / 4 % 4, n % 4};
-            for (int axis = 0; axis < 3; axis++) c->unknown[c->unknowns][axis] = block[axis] * BLOCK + at[axis];
-            c->number[(int64_t)c->slots[i] * BLOCK_NODES + n] = c->unknowns++;
-        }
-    c->mapped = true;
-    return STATUS_OK;
-}
-
 void constraint_map(solid *s) {
     fibre_constraint *c = &s->constraint;
-    if (c->mapped || !c->preconditioner) return;
+    if (c->mapped || c->unknowns == 0) return;
     for (int64_t i = 0; i < (int64_t)s->slot_count * BLOCK_NODES; i++) c->number[i] = -1;
     for (int32_t i = 0; i < c->unknowns; i++) {
         int32_t block[3], node = 0;
@@ -96,6 +77,41 @@ void constraint_map(solid *s) {
         if (slot >= 0) c->number[(int64_t)slot * BLOCK_NODES + node] = i;
     }
     c->mapped = true;
+}
+
+/* Renumbers them in the order of a dissection. */
+static status order_unknowns(solid *s, report *r) {
+    fibre_constraint *c = &s->constraint;
+    size_t count = (size_t)c->unknowns;
+    int32_t *order = memory_allocate_array(count, sizeof *order), (*cells)[3] = memory_allocate_array(count, sizeof *cells);
+    bool fine = order && cells && dissection_order((const int32_t(*)[3])c->unknown, c->unknowns, constraint_reach(s), order);
+    for (int32_t i = 0; fine && i < c->unknowns; i++) memcpy(cells[i], c->unknown[order[i]], sizeof cells[i]);
+    if (fine) memcpy(c->unknown, cells, count * sizeof *cells);
+    memory_free(order, order ? count * sizeof *order : 0);
+    memory_free(cells, cells ? count * sizeof *cells : 0);
+    if (!fine) return report_set(r, STATUS_SYSTEM, "out of memory for the order of %d cells of inextensible fibres", c->unknowns);
+    c->mapped = false;
+    constraint_map(s);
+    return STATUS_OK;
+}
+
+/* Numbers the cells that hold fibres so that a factorisation fills in little. */
+static status number_unknowns(solid *s, report *r) {
+    fibre_constraint *c = &s->constraint;
+    constraint_forget(s);
+    size_t count = (size_t)count_unknowns(s);
+    c->vector = memory_allocate_array(2 * count, sizeof *c->vector);
+    c->unknown = memory_allocate_array(count, sizeof *c->unknown);
+    c->vector_size = (int32_t)count;
+    if (!c->vector || !c->unknown) return report_set(r, STATUS_SYSTEM, "out of memory for %d cells of inextensible fibres", (int)count);
+    for (int32_t i = 0; i < c->slot_count; i++)
+        for (int n = 0; n < BLOCK_NODES; n++) {
+            if (!(constraint_weight(s, c->slots[i], n) > 0)) continue;
+            const int32_t *block = s->slot_coordinate[c->slots[i]], at[3] = {n / 16, n / 4 % 4, n % 4};
+            for (int axis = 0; axis < 3; axis++) c->unknown[c->unknowns][axis] = block[axis] * BLOCK + at[axis];
+            c->unknowns++;
+        }
+    return order_unknowns(s, r);
 }
 
 /* What a new preconditioner costs, in iterations. */
@@ -131,6 +147,7 @@ status constraint_precondition(solid *s, real dt, report *r) {
     if (code == STATUS_OK) code = constraint_assemble(s, dt, c->number, c->unknowns, &m, r);
     if (code == STATUS_OK) {
         scale_matrix(s, &m);
+        m.ordered = true;
         bool automatic = c->solver == CONSTRAINT_AUTO;
         if (c->solver == CONSTRAINT_DIRECT || (automatic && sparse_available(SPARSE_DIRECT)))
             code = sparse_create(SPARSE_DIRECT, &m, automatic ? WORK_LIMIT : 0, &c->preconditioner, r);

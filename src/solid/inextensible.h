@@ -33,7 +33,9 @@ void constraint_begin_frame(solid *s);
 double constraint_weight(const solid *s, int32_t slot, int n);
 double constraint_scale(const solid *s, int32_t slot, int n);
 double constraint_relaxation(const solid *s, int32_t slot, int n);
+/* Two cells that are further apart than this along an axis share no node. */
+int constraint_reach(const solid *s);
 /* The operator as a matrix over the cells that have a number (constraint_matrix.c). Errors: out of memory. */
-status constraint_assemble(const solid *s, real dt, const int32_t *number, int32_t cells, sparse_matrix *m, report *r);
+status constraint_assemble(solid *s, real dt, const int32_t *number, int32_t cells, sparse_matrix *m, report *r);
 
 #endif

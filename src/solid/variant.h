@@ -68,6 +68,7 @@
 #define constraint_weight SOLID_VARIANT(constraint_weight)
 #define constraint_relaxation SOLID_VARIANT(constraint_relaxation)
 #define constraint_scale SOLID_VARIANT(constraint_scale)
+#define constraint_reach SOLID_VARIANT(constraint_reach)
 #define constraint_assemble SOLID_VARIANT(constraint_assemble)
 #define constraint_sweep SOLID_VARIANT(constraint_sweep)
 #define constraint_solve SOLID_VARIANT(constraint_solve)

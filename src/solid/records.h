@@ -174,10 +174,10 @@ SIMD_INLINE void scatter_plain_particle(const real *r, int nodes, real *window) 
     }
 }
 
-/* Sums of a run stay in registers where a row is one; elsewhere they do not fit, and particles that move make runs short. */
+/* Runs where their sums fit in registers, as with momentum. */
 SIMD_INLINE void scatter_plain(const real *records, int count, kernel_kind kind, real *window) {
     int nodes = kind == KERNEL_QUADRATIC ? 3 : 4;
-    if (ROW_PARTS == 1)
+    if (ROWS_FIT_REGISTERS)
         for (int p = 0; p < count;) p = scatter_plain_run(records, p, count, nodes, window);
     else
         for (int p = 0; p < count; p++) scatter_plain_particle(records + p * RECORD, nodes, window);

@@ -127,15 +127,15 @@ SIMD_INLINE void damage_records(const tile_work *w, kernel_kind kernel) {
         for (int part = 0; part < PACK_PARTS; part++) {
             int32_t pack = w->tile->first_pack + k;
             kernel_place at = kernel_locate(kernel, vec3v_load(&s->fields[FIELD_POSITION], pack, part));
-            vec columns[RECORD - P2G_WZ];
-            kernel_weights(kernel, at.u.z, columns + P2G_WZ - P2G_WZ);
-            kernel_weights(kernel, at.u.x, columns + P2G_WX - P2G_WZ);
-            kernel_weights(kernel, at.u.y, columns + P2G_WY - P2G_WZ);
-            columns[P2G_NODE - P2G_WZ] = window_index(at.base);
-            columns[P2G_DAMAGE - P2G_WZ] = vec_load(field_at(&s->fields[s->damage_field], pack, 0, part));
-            columns[P2G_DAMAGE + 1 - P2G_WZ] = vec_all(1);
-            columns[P2G_PLANE - P2G_WZ] = at.base.z - (real)WINDOW_LOW;
-            records_store(w->scratch->records, k * PACK + part * VEC_LANES, P2G_WZ, columns, RECORD - P2G_WZ);
+            vec columns[RECORD];
+            kernel_weights(kernel, at.u.z, columns + P2G_WZ);
+            kernel_weights(kernel, at.u.x, columns + P2G_WX);
+            kernel_weights(kernel, at.u.y, columns + P2G_WY);
+            columns[P2G_NODE] = window_index(at.base);
+            columns[P2G_DAMAGE] = vec_load(field_at(&s->fields[s->damage_field], pack, 0, part));
+            columns[P2G_DAMAGE + 1] = vec_all(1);
+            columns[P2G_PLANE] = at.base.z - (real)WINDOW_LOW;
+            records_store(w->scratch->records, k * PACK + part * VEC_LANES, P2G_WZ, columns + P2G_WZ, RECORD - P2G_WZ);
         }
 }
 

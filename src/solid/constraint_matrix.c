@@ -5,14 +5,21 @@
 #include "solid/inextensible_lanes.h"
 #include "solid/order.h"
 
-enum { WIDEST = 6, AROUND = BLOCK + 2 * (WIDEST - 1) };
+enum {
+    WIDEST = 6,
+    AROUND = BLOCK + 2 * (WIDEST - 1),
+    QUADS = (3 * WIDEST + 3) / 4, /* of a line of nodes along z */
+    SHIFTED = (2 * WIDEST - 1) * WIDEST * WIDEST * QUADS * 4,
+};
+
+typedef double quad __attribute__((vector_size(4 * sizeof(double))));
 
 typedef struct assembly {
     const solid *state;
     const int32_t *number; // [slots][BLOCK_NODES], −1: no unknown
     double dt;
-    int low, width; /* a cell's nodes start at `low` from it */
-    double *rows;   // [cells][width³][3]
+    int low, width;       /* a cell's nodes start at `low` from it */
+    double *rows;         // [cells][width³][3]
     int32_t (*near)[125]; // [slots] slots of the blocks around, −2 … 2; −1: none
     sparse_matrix *matrix;
 } assembly;
@@ -24,7 +31,7 @@ static size_t row_size(const assembly *a) {
 /* One particle's share of its cells' rows. */
 SIMD_INLINE void add_particle(const assembly *a, const fibre_lanes *l, int lane, const solid_block *b, kernel_kind kernel) {
     int nodes = kernel == KERNEL_QUADRATIC ? 3 : 4, width = a->width;
-    double scale = (kernel == KERNEL_QUADRATIC ? 4.0 : 3.0) / a->state->definition.dx, gradient[64], direction[3];
+    double scale = (kernel == KERNEL_QUADRATIC ? 4.0 : 3.0) / a->state->definition.dx, direction[3], pull[4][4][12]; /* a_α (a · G_i) */
     real gamma[8];
     int base[3], cell[3];
     const vec u[3] = {l->at.u.x, l->at.u.y, l->at.u.z}, low[3] = {l->at.base.x, l->at.base.y, l->at.base.z};
@@ -40,8 +47,10 @@ SIMD_INLINE void add_particle(const assembly *a, const fibre_lanes *l, int lane,
     }
     for (int i = 0; i < nodes; i++)
         for (int j = 0; j < nodes; j++)
-            for (int n = 0; n < nodes; n++)
-                gradient[(i * 4 + j) * 4 + n] = scale * w[0][i] * w[1][j] * w[2][n] * (x[0][i] + x[1][j] + x[2][n]);
+            for (int n = 0; n < nodes; n++) {
+                double gradient = scale * w[0][i] * w[1][j] * w[2][n] * (x[0][i] + x[1][j] + x[2][n]);
+                for (int k = 0; k < 3; k++) pull[i][j][3 * n + k] = gradient * direction[k];
+            }
     cell_weights(l, lane, gamma);
     for (int c = 0; c < 8; c++) {
         int at[3] = {cell[0] + (c >> 2), cell[1] + (c >> 1 & 1), cell[2] + (c & 1)}, block = 0, node = 0, first[3];
@@ -55,11 +64,10 @@ SIMD_INLINE void add_particle(const assembly *a, const fibre_lanes *l, int lane,
         if (number < 0) continue;
         double *row = a->rows + (size_t)number * row_size(a), share = (double)(l->volume[lane] * gamma[c]);
         for (int i = 0; i < nodes; i++)
-            for (int j = 0; j < nodes; j++)
-                for (int n = 0; n < nodes; n++) {
-                    double *to = row + (((first[0] + i) * width + first[1] + j) * width + first[2] + n) * 3;
-                    for (int k = 0; k < 3; k++) to[k] += share * gradient[(i * 4 + j) * 4 + n] * direction[k];
-                }
+            for (int j = 0; j < nodes; j++) {
+                double *to = row + (((first[0] + i) * width + first[1] + j) * width + first[2]) * 3;
+                for (int k = 0; k < 3 * nodes; k++) to[k] += share * pull[i][j][k];
+            }
     }
 }
 
@@ -82,9 +90,10 @@ static void add_cubic(void *context, int32_t block, int32_t next, int worker) {
     add_block(context, block, KERNEL_CUBIC);
 }
 
-static void find_near(void *context, int64_t slot, int worker) {
+static void find_near(void *context, int64_t index, int worker) {
     (void)worker;
     const assembly *a = context;
+    int32_t slot = a->state->constraint.slots[index];
     const int32_t *own = a->state->slot_coordinate[slot];
     for (int n = 0; n < 125; n++) {
         int32_t c[3] = {own[0] + n / 25 - 2, own[1] + n / 5 % 5 - 2, own[2] + n % 5 - 2};
@@ -92,95 +101,99 @@ static void find_near(void *context, int64_t slot, int worker) {
     }
 }
 
-/* Index [slot][node] of what lies at an offset from a place in a slot, −1 outside the grid. */
-static int64_t index_at(const assembly *a, int32_t slot, const int at[3]) {
-    int block = 0, node = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        int o = (at[axis] + 2 * BLOCK) / BLOCK - 2;
-        block = block * 5 + o + 2;
-        node = node * BLOCK + at[axis] - o * BLOCK;
-    }
-    int32_t near = a->near[slot][block];
-    return near < 0 ? -1 : (int64_t)near * BLOCK_NODES + node;
+/* A slot and what its cells share nodes with: the places from `reach` before its first cell to as far after its last. */
+typedef struct surroundings {
+    int wide;                                /* places along an axis */
+    int32_t place[AROUND * AROUND * AROUND]; /* index [slot][node] of each, −1 outside the grid */
+    int32_t number[AROUND * AROUND * AROUND];
+} surroundings;
+
+static int place_at(const surroundings *around, int reach, int x, int y, int z) {
+    return ((x + reach) * around->wide + y + reach) * around->wide + z + reach;
+}
+
+/* False, and nothing else known, when none of the slot's own cells is an unknown. */
+static bool look_around(const assembly *a, int32_t slot, surroundings *around) {
+    bool some = false;
+    for (int n = 0; n < BLOCK_NODES; n++) some |= a->number[(int64_t)slot * BLOCK_NODES + n] >= 0;
+    if (!some) return false;
+    int reach = a->width - 1, wide = around->wide = BLOCK + 2 * reach, block[AROUND], node[AROUND];
+    for (int i = 0; i < wide; i++) block[i] = (i - reach + 2 * BLOCK) / BLOCK, node[i] = (i - reach + 2 * BLOCK) % BLOCK;
+    int n = 0;
+    for (int i = 0; i < wide; i++)
+        for (int j = 0; j < wide; j++)
+            for (int k = 0; k < wide; k++, n++) {
+                int32_t near = a->near[slot][(block[i] * 5 + block[j]) * 5 + block[k]];
+                around->place[n] = near < 0 ? -1 : near * BLOCK_NODES + (node[i] * BLOCK + node[j]) * BLOCK + node[k];
+                around->number[n] = near < 0 ? -1 : a->number[around->place[n]];
+            }
+    return true;
 }
 
 /* M⁻¹ times a cell's row, holds obeyed. */
-static void respond(const assembly *a, int32_t slot, const int cell[3], const double *row, double *out) {
+static void respond(const assembly *a, const surroundings *around, const int cell[3], const double *row, double *out) {
     const solid *s = a->state;
     int width = a->width;
     for (int n = 0; n < width * width * width; n++) {
-        int at[3] = {cell[0] + a->low + n / (width * width), cell[1] + a->low + n / width % width, cell[2] + a->low + n % width};
-        int64_t index = index_at(a, slot, at);
-        real mass = index < 0 ? 0 : s->grid[index * NODE + 3];
-        double *v = out + 3 * n;
-        for (int k = 0; k < 3; k++) v[k] = mass > 0 ? row[3 * n + k] * a->dt / (double)mass : 0;
-        if (index >= 0) hold_project(&s->constraint.holds[index], v);
+        int at = place_at(around, width - 1, cell[0] + a->low + n / (width * width), cell[1] + a->low + n / width % width, cell[2] + a->low + n % width);
+        int32_t place = around->place[at];
+        double mass = place < 0 ? 0 : (double)s->grid[(int64_t)place * NODE + 3], inverse = mass > 0 ? a->dt / mass : 0, *v = out + 3 * n;
+        for (int k = 0; k < 3; k++) v[k] = row[3 * n + k] * inverse;
+        if (place >= 0) hold_project(&s->constraint.holds[place], v);
     }
 }
 
-/* Σ over the nodes that two cells share, `line` of them in a row along z. */
-SIMD_INLINE double product_of(int width, int line, const double *response, const double *row, const int offset[3]) {
-    int from[2], to[2], up = offset[2] > 0 ? offset[2] : 0;
-    for (int axis = 0; axis < 2; axis++) {
-        from[axis] = offset[axis] > 0 ? offset[axis] : 0;
-        to[axis] = offset[axis] < 0 ? width + offset[axis] : width;
-    }
-    double sums[3 * WIDEST] = {0}, sum = 0;
-    for (int i = from[0]; i < to[0]; i++)
-        for (int j = from[1]; j < to[1]; j++) {
-            const double *x = response + ((i * width + j) * width + up) * 3;
-            const double *y = row + (((i - offset[0]) * width + j - offset[1]) * width + up - offset[2]) * 3;
-            for (int k = 0; k < 3 * line; k++) sums[k] += x[k] * y[k];
+static int line_quads(int width) {
+    return (3 * width + 3) / 4;
+}
+
+/* A response for each distance along z, −reach … reach: moved by so much, zero where nothing is, its lines filled up
+ * with zeros to whole quads. A product is then one of whole lines, whatever the distance. */
+static void shift_response(int width, const double *response, double *shifted) {
+    int reach = width - 1, lines = width * width, length = line_quads(width) * 4;
+    memset(shifted, 0, (size_t)((2 * reach + 1) * lines * length) * sizeof *shifted);
+    for (int k = -reach; k <= reach; k++)
+        for (int line = 0; line < lines; line++, shifted += length) {
+            int from = k > 0 ? 3 * k : 0, to = k < 0 ? -3 * k : 0;
+            memcpy(shifted + to, response + line * 3 * width + from, (size_t)(3 * width - from - to) * sizeof *shifted);
         }
-    for (int k = 0; k < 3 * line; k++) sum += sums[k];
-    return sum;
 }
 
-/* Widths and lines as constants: the innermost loop is a few instructions. */
-static double product(int width, const double *response, const double *row, const int offset[3]) {
-    int line = width - (offset[2] < 0 ? -offset[2] : offset[2]);
-    if (width == 4) switch (line) {
-        case 4: return product_of(4, 4, response, row, offset);
-        case 3: return product_of(4, 3, response, row, offset);
-        case 2: return product_of(4, 2, response, row, offset);
-        default: return product_of(4, 1, response, row, offset);
+/* Σ over the nodes that two cells share, the second (i, j) further along x and y. Reads up to a quad past the end of the row. */
+SIMD_INLINE double product_of(int width, int quads, const double *shifted, const double *row, int i, int j) {
+    quad sums[QUADS] = {{0}};
+    for (int x = i > 0 ? i : 0; x < width + (i < 0 ? i : 0); x++)
+        for (int y = j > 0 ? j : 0; y < width + (j < 0 ? j : 0); y++) {
+            const double *response = shifted + (x * width + y) * quads * 4, *other = row + ((x - i) * width + y - j) * 3 * width;
+            for (int q = 0; q < quads; q++) {
+                quad a, b;
+                memcpy(&a, response + q * 4, sizeof a);
+                memcpy(&b, other + q * 4, sizeof b);
+                sums[q] += a * b;
+            }
         }
-    switch (line) {
-    case 6: return product_of(6, 6, response, row, offset);
-    case 5: return product_of(6, 5, response, row, offset);
-    case 4: return product_of(6, 4, response, row, offset);
-    case 3: return product_of(6, 3, response, row, offset);
-    case 2: return product_of(6, 2, response, row, offset);
-    default: return product_of(6, 1, response, row, offset);
-    }
+    for (int q = 1; q < quads; q++) sums[0] += sums[q];
+    return (sums[0][0] + sums[0][2]) + (sums[0][1] + sums[0][3]);
 }
 
-/* The numbers of a slot's cells and of those that share a node with them; false when the slot has no unknowns. */
-static bool number_around(const assembly *a, int32_t slot, int32_t *around) {
-    bool some = false;
-    for (int n = 0; n < BLOCK_NODES; n++) some |= a->number[(int64_t)slot * BLOCK_NODES + n] >= 0;
-    int reach = a->width - 1, wide = BLOCK + 2 * reach;
-    for (int n = 0; n < wide * wide * wide && some; n++) {
-        int at[3] = {n / (wide * wide) - reach, n / wide % wide - reach, n % wide - reach};
-        int64_t index = index_at(a, slot, at);
-        around[n] = index < 0 ? -1 : a->number[index];
-    }
-    return some;
+/* Widths as constants: sums stay in registers. */
+static double product(int width, const double *shifted, const double *row, int i, int j, int k) {
+    shifted += (k + width - 1) * width * width * line_quads(width) * 4;
+    return width == 4 ? product_of(4, 3, shifted, row, i, j) : product_of(6, 5, shifted, row, i, j);
 }
 
 /* The column of one cell; `row` and `value` NULL: counts its entries only. */
-static int32_t add_column(const assembly *a, const int32_t *around, int32_t own, const int cell[3], const double *response, int32_t *row,
-                          double *value) {
-    int reach = a->width - 1, wide = BLOCK + 2 * reach;
+static int32_t add_column(const assembly *a, const surroundings *around, int32_t own, const int cell[3], const double *shifted, int32_t *row, double *value) {
+    int reach = a->width - 1;
     int32_t used = 0;
     for (int i = -reach; i <= reach; i++)
         for (int j = -reach; j <= reach; j++) {
-            const int32_t *line = around + ((cell[0] + i + reach) * wide + cell[1] + j + reach) * wide + cell[2] + reach;
+            const int32_t *line = around->number + place_at(around, reach, cell[0] + i, cell[1] + j, cell[2]);
             for (int k = -reach; k <= reach; k++) {
                 if (line[k] < own) continue;
                 if (row) {
                     row[used] = line[k];
-                    value[used] = product(a->width, response, a->rows + (size_t)line[k] * row_size(a), (const int[]){i, j, k});
+                    value[used] = product(a->width, shifted, a->rows + (size_t)line[k] * row_size(a), i, j, k);
                 }
                 used++;
             }
@@ -191,11 +204,12 @@ static int32_t add_column(const assembly *a, const int32_t *around, int32_t own,
 static void count_slot(void *context, int64_t index, int worker) {
     (void)worker;
     const assembly *a = context;
-    int32_t around[AROUND * AROUND * AROUND], slot = a->state->constraint.slots[index];
-    bool some = number_around(a, slot, around);
+    int32_t slot = a->state->constraint.slots[index];
+    surroundings around;
+    bool some = look_around(a, slot, &around);
     for (int n = 0; some && n < BLOCK_NODES; n++) {
         int32_t own = a->number[(int64_t)slot * BLOCK_NODES + n];
-        if (own >= 0) a->matrix->start[own + 1] = add_column(a, around, own, (const int[]){n / 16, n / 4 % 4, n % 4}, NULL, NULL, NULL);
+        if (own >= 0) a->matrix->start[own + 1] = add_column(a, &around, own, (const int[]){n / 16, n / 4 % 4, n % 4}, NULL, NULL, NULL);
     }
 }
 
@@ -203,17 +217,19 @@ static void fill_slot(void *context, int64_t index, int worker) {
     (void)worker;
     const assembly *a = context;
     sparse_matrix *m = a->matrix;
-    int32_t around[AROUND * AROUND * AROUND], slot = a->state->constraint.slots[index];
-    double response[WIDEST * WIDEST * WIDEST * 3];
-    bool some = number_around(a, slot, around);
+    int32_t slot = a->state->constraint.slots[index];
+    surroundings around;
+    double response[WIDEST * WIDEST * WIDEST * 3], shifted[SHIFTED];
+    bool some = look_around(a, slot, &around);
     for (int n = 0; some && n < BLOCK_NODES; n++) {
         int32_t own = a->number[(int64_t)slot * BLOCK_NODES + n];
         if (own < 0) continue;
         int cell[3] = {n / 16, n / 4 % 4, n % 4};
-        respond(a, slot, cell, a->rows + (size_t)own * row_size(a), response);
+        respond(a, &around, cell, a->rows + (size_t)own * row_size(a), response);
+        shift_response(a->width, response, shifted);
         int32_t *row = m->row + m->start[own];
         double *value = m->value + m->start[own];
-        int32_t used = add_column(a, around, own, cell, response, row, value);
+        int32_t used = add_column(a, &around, own, cell, shifted, row, value);
         for (int32_t e = 0; e < used; e++)
             if (row[e] == own) value[e] += constraint_relaxation(a->state, slot, n);
     }
@@ -241,19 +257,20 @@ static status allocate_matrix(assembly *a, sparse_matrix *m, int32_t cells, repo
 status constraint_assemble(solid *s, real dt, const int32_t *number, int32_t cells, sparse_matrix *m, report *r) {
     bool quadratic = s->definition.kernel == KERNEL_QUADRATIC;
     assembly a = {.state = s, .number = number, .dt = (double)dt, .low = quadratic ? -1 : -2, .width = constraint_reach(s) + 1, .matrix = m};
-    a.rows = memory_allocate_array((size_t)cells, row_size(&a) * sizeof *a.rows);
+    size_t reals = (size_t)cells * row_size(&a) + 4; /* and what product_of reads past the last */
+    a.rows = memory_allocate_array(reals, sizeof *a.rows);
     a.near = memory_allocate_array((size_t)s->slot_count, sizeof *a.near);
     status code = STATUS_OK;
     if (!a.rows || !a.near) code = report_set(r, STATUS_SYSTEM, "out of memory for the matrix of %d cells of inextensible fibres", cells);
     if (code == STATUS_OK) {
-        parallel_for(s->threads, s->slot_count, 64, find_near, &a);
+        parallel_for(s->threads, s->constraint.slot_count, 16, find_near, &a);
         code = allocate_matrix(&a, m, cells, r);
     }
     if (code == STATUS_OK) {
         colours_pass(s, quadratic ? add_quadratic : add_cubic, &a);
         parallel_for(s->threads, s->constraint.slot_count, 4, fill_slot, &a);
     }
-    memory_free(a.rows, a.rows ? (size_t)cells * row_size(&a) * sizeof *a.rows : 0);
+    memory_free(a.rows, a.rows ? reals * sizeof *a.rows : 0);
     memory_free(a.near, a.near ? (size_t)s->slot_count * sizeof *a.near : 0);
     return code;
 }

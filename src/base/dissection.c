@@ -73,6 +73,7 @@ static void dissect(const dissection *d, int32_t *order, int32_t count) {
 }
 
 bool dissection_order(const int32_t (*cells)[3], int32_t count, int reach, int32_t *order) {
+    if (count == 0) return true;
     for (int32_t i = 0; i < count; i++) order[i] = i;
     dissection d = {.cells = cells, .reach = reach};
     size_t room = (size_t)longest(&d, order, count).length + (size_t)reach;

@@ -2,7 +2,6 @@
 
 #include "base/memory.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Fewer cells than these are one dense block of the factor anyway. */
@@ -12,7 +11,7 @@ typedef struct dissection {
     const int32_t (*cells)[3];
     int reach;
     int32_t *other;     /* [count], room to sort into */
-    int32_t *histogram; /* [longest extent of all + 1] */
+    int32_t *histogram; /* [longest extent of all + reach] */
 } dissection;
 
 typedef struct extent {
@@ -35,7 +34,7 @@ static extent longest(const dissection *d, const int32_t *order, int32_t count) 
 }
 
 /* Where the layer between the halves begins, from `low`: the one with the fewest cells in it where the smaller half has at least a third, else the
- * one whose halves are most alike. *between is the layer's count; false when every layer leaves one side empty. */
+ * one whose halves are most alike. False when every layer leaves one side empty. */
 static bool choose_layer(const dissection *d, extent along, int32_t count, int32_t *begin) {
     const int32_t *cells = d->histogram;
     int32_t below = 0, between = 0, best_between = INT32_MAX, best_smaller = 0;

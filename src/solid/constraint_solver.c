@@ -15,7 +15,7 @@ enum {
 /* Nanoseconds, roughly: an iteration a particle, and assembling a matrix an entry. Only what one is of the other counts. */
 static const double ITERATING = 100, ASSEMBLING = 60;
 
-/* Multiplications that a factorisation may take: a second with a BLAS that is made for the processor, ten or more with the reference one. */
+/* Multiplications that a factorisation may take: a second with a BLAS that is made for the processor, some four with the reference one. */
 static const double WORK_LIMIT = 2e10;
 
 /* What the diagonal of the scaled matrix, one at the most, grows by, so that rounding leaves the matrix definite. */
